@@ -1,0 +1,37 @@
+// What light transport asks of geometry: nearest hit, and whether anything is in the way.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "field/base/id.h"
+#include "field/math/box3.h"
+#include "field/math/ray.h"
+#include "field/math/vec3.h"
+
+namespace marrow {
+
+struct SurfaceHit {
+  double t = 0;     ///< along the ray, scene units
+  Vec3d position;   ///< on the surface
+  UnitVec3 normal;  ///< outward: for a field -gradient/|gradient|; geometric and shading normal are one
+  Vec3d outside;    ///< a point beside `position`, certified to lie outside: reflected rays start here, at t = 0
+  ObjectId object;
+  MaterialId material;
+  std::uint32_t evaluations = 0;  ///< field evaluations the ray took
+  bool certified = true;          ///< no surface before it was skipped, by proof
+};
+
+/// Immutable and safe to call from many threads.
+class Surfaces {
+ public:
+  virtual ~Surfaces() = default;
+  /// The first hit with ray.t_min <= t <= ray.t_max.
+  virtual std::optional<SurfaceHit> first_hit(const Ray&) const = 0;
+  /// Whether any surface lies on the ray within its interval.
+  virtual bool occluded(const Ray&) const = 0;
+  /// Of all finite objects; planes do not count. Empty when there are none.
+  virtual Box3 bounds() const = 0;
+};
+
+}  // namespace marrow
