@@ -1,0 +1,75 @@
+// One blend in flat form, in its own coordinates: lists of primitives and the correction of their sum.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "field/base/id.h"
+#include "field/blend/correction.h"
+#include "field/description/field_node.h"
+#include "field/math/box3.h"
+#include "field/skeleton/skeleton_sample.h"
+
+namespace marrow {
+
+/// Primitives of one kind and the material of each. Invariant: materials is empty (all are the object's) or
+/// parallel to skeletons.
+template <class Skeleton>
+struct PrimitiveList {
+  std::vector<Skeleton> skeletons;
+  std::vector<MaterialId> materials;
+
+  std::size_t size() const { return skeletons.size(); }
+  bool empty() const { return skeletons.empty(); }
+  MaterialId material(std::size_t i) const { return materials.empty() ? MaterialId{} : materials[i]; }
+  void add(const Skeleton& skeleton, MaterialId material_id) {
+    if (material_id.valid() && materials.empty()) materials.resize(skeletons.size());
+    if (material_id.valid() || !materials.empty()) materials.push_back(material_id);
+    skeletons.push_back(skeleton);
+  }
+};
+
+/// Polylines and skeleton graphs are flattened to segments, an isolated root of a graph to a point.
+/// A point has the same field in both skeleton models. Every radius is > 0 and every segment has length > 0.
+struct BlendField {
+  int degree = 4;
+  double alpha = 1.5707963267948966;  ///< resolved, radians in [-1, pi/2]; pi/2 is the plain sum
+  bool cavity = true;
+  Projection projection = Projection::Paper;
+  PrimitiveList<PointSkeleton> points;
+  PrimitiveList<SegmentSkeleton> segments;           ///< integral (SCALIS) model
+  PrimitiveList<SegmentSkeleton> distance_segments;  ///< distance model
+
+  std::size_t size() const { return points.size() + segments.size() + distance_segments.size(); }
+};
+
+/// Inside where corrected > 1. On a skeleton the values are infinite and the gradients 0.
+struct BlendSample {
+  double sum = 0;              ///< f = sum f_i
+  Vec3d sum_gradient{};        ///< grad f
+  Vec3d si_gradient{};         ///< sum of grad_S f_i
+  double si_norm = 0;          ///< G = |si_gradient|
+  double alpha = 0;            ///< radians, as used here
+  double corrected = 0;        ///< C(f, G)
+  Vec3d corrected_gradient{};  ///< closed form   [field-maths 5, tracing 4]
+};
+BlendSample evaluate(const BlendField&, const Vec3d& p);
+
+/// The `corrected` of evaluate(), bit for bit, without the derivatives that only its gradient needs.
+double corrected_value(const BlendField&, const Vec3d& p);
+
+/// The plain sums, as far as asked for.
+template <Derivatives>
+SkeletonSample sum_of_primitives(const BlendField&, const Vec3d& p);
+
+Correction correction_of(const BlendField&);
+
+/// Material of the primitive with the largest f_i at p; invalid means the object's own.
+MaterialId strongest_material(const BlendField&, const Vec3d& p);
+
+/// Bounds of the skeletons themselves, without radii. Empty for a blend without primitives.
+Box3 skeleton_bounds(const BlendField&);
+/// Largest radius of any primitive; 0 for a blend without primitives.
+double largest_radius(const BlendField&);
+
+}  // namespace marrow

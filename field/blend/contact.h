@@ -1,0 +1,12 @@
+// The projection angle at which two equal skeletons join exactly when their surfaces touch.
+#pragma once
+
+#include "field/description/field_node.h"
+
+namespace marrow {
+
+/// The alpha with C(2, 0) = 1: midway between two equal points, infinite lines or planes two radii apart, f = 2
+/// and grad_S f = 0. Found by bisection to the last bits; in (0, pi/2).   [Zanni et al. 2015, sec. 5; field-maths 6.1]
+double contact_alpha(int degree, bool cavity = true, Projection = Projection::Paper);
+
+}  // namespace marrow

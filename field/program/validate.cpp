@@ -1,0 +1,150 @@
+// One check for each kind of node.
+#include "field/program/validate.h"
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <span>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "field/base/overloaded.h"
+#include "field/base/result.h"
+#include "field/kernel/inverse_family.h"
+
+namespace marrow {
+namespace {
+
+constexpr double smallest_alpha = -1, largest_alpha = std::numbers::pi / 2;
+
+// Collects what is wrong at one place of the text.
+class Findings {
+ public:
+  Findings(const SourceLocation& where, Diagnostics& all) : where_(where), all_(all) {}
+
+  void add(std::string message, std::string hint) {
+    all_.push_back({.where = where_, .message = std::move(message), .hint = std::move(hint)});
+  }
+  void check_positions(std::span<const Vec3d> positions) {
+    for (const Vec3d& p : positions)
+      if (!is_finite(p)) return add("a position is not finite", "coordinates are finite numbers");
+  }
+  void check_radii(std::span<const double> radii) {
+    for (std::size_t i = 0; i < radii.size(); ++i) {
+      if (radii[i] > 0 && std::isfinite(radii[i])) continue;
+      const std::string which = radii.size() == 1 ? "the radius" : fmt::format("radius {} of {}", i + 1, radii.size());
+      return add(fmt::format("{} is {}", which, radii[i]), "a radius is a finite number above 0");
+    }
+  }
+
+ private:
+  const SourceLocation& where_;
+  Diagnostics& all_;
+};
+
+void check(const PointSkeleton& point, Findings& findings) {
+  findings.check_positions({&point.at, 1});
+  findings.check_radii({&point.radius, 1});
+}
+
+void check(const SegmentSkeleton& segment, Findings& findings) {
+  const Vec3d ends[] = {segment.from, segment.to};
+  const double radii[] = {segment.radius_from, segment.radius_to};
+  findings.check_positions(ends);
+  if (radii[0] == radii[1]) findings.check_radii({radii, 1});
+  else findings.check_radii(radii);
+}
+
+void check(const PolylineSkeleton& polyline, Findings& findings) {
+  if (polyline.points.size() < 2)
+    findings.add(fmt::format("a polyline of {} points", polyline.points.size()), "a polyline has at least 2 points");
+  if (polyline.points.size() != polyline.radii.size())
+    findings.add(fmt::format("{} points but {} radii", polyline.points.size(), polyline.radii.size()),
+                 "give one radius for each point");
+  findings.check_positions(polyline.points);
+  findings.check_radii(polyline.radii);
+}
+
+void check(const SharedSkeletonGraph& graph, Findings& findings) {
+  if (!graph) return findings.add("a skeleton without data", "the skeleton file was not read");
+  const std::size_t count = graph->positions.size();
+  if (graph->radii.size() != count || graph->parents.size() != count)
+    return findings.add(fmt::format("a skeleton with {} positions, {} radii and {} parents", count, graph->radii.size(),
+                                    graph->parents.size()),
+                        "every node has a position, a radius and a parent");
+  if (count == 0) findings.add("a skeleton without nodes", "the file holds at least one node");
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int64_t parent = graph->parents[i];
+    if (parent == SkeletonGraph::no_parent) continue;
+    if (parent >= 0 && parent < static_cast<std::int64_t>(count) && parent != static_cast<std::int64_t>(i)) continue;
+    findings.add(fmt::format("node {} of the skeleton has the parent {}", i, parent),
+                 fmt::format("a parent is another of the nodes 0 to {}, or none", count - 1));
+    break;
+  }
+  findings.check_positions(graph->positions);
+  findings.check_radii(graph->radii);
+}
+
+void check(const Blend& blend, Findings& findings) {
+  const int degree = blend.kernel.degree;
+  if (degree < min_kernel_degree || degree > max_kernel_degree)
+    findings.add(fmt::format("kernel degree {} is out of range", degree),
+                 fmt::format("the degree is a whole number from {} to {}", min_kernel_degree, max_kernel_degree));
+  if (const double* alpha = std::get_if<double>(&blend.alpha)) {
+    if (!(*alpha >= smallest_alpha && *alpha <= largest_alpha))
+      findings.add(fmt::format("alpha {} is out of range", *alpha),
+                   "alpha is from -1 to pi/2 radians, or contact, or sum");
+    else if (*alpha < 0 && blend.projection == Projection::Exact)
+      findings.add(fmt::format("alpha {} with the exact projection", *alpha),
+                   "below alpha = 0 only `projection: paper` is defined");
+  }
+  if (blend.of.empty()) findings.add("a blend of nothing", "list primitives under `of:`");
+}
+
+void check(const Union& united, Findings& findings) {
+  if (united.of.empty()) findings.add("a union of nothing", "list fields under `of:`");
+}
+
+void check(const Transform& transform, Findings& findings) {
+  const auto& [x, y, z] = transform.parent_from_child.columns;
+  if (!is_finite(x) || !is_finite(y) || !is_finite(z) || !is_finite(transform.parent_from_child.translation))
+    return findings.add("a transform that is not finite", "translations, angles and scales are finite numbers");
+  // |det| against the volume its column lengths would span: 0 for a flat map of any size.
+  const double volume = length(x) * length(y) * length(z);
+  if (!(std::fabs(transform.parent_from_child.determinant()) > 1e-12 * volume))
+    findings.add("a singular transform: it flattens what it places", "no scale may be 0");
+}
+
+void check_children(std::span<const FieldNodeId> children, std::size_t parent, Findings& findings) {
+  for (const FieldNodeId child : children)
+    if (!child.valid() || child.index() >= parent)
+      return findings.add("a child does not stand before its parent", "children stand before their parents");
+}
+
+}  // namespace
+
+Diagnostics validate(const FieldDescription& description) {
+  Diagnostics all;
+  for (std::size_t i = 0; i < description.nodes.size(); ++i) {
+    const FieldNode& node = description.nodes[i];
+    Findings findings(node.where, all);
+    std::visit(
+        Overloaded{[&](const Primitive& p) { std::visit([&](const auto& s) { check(s, findings); }, p.skeleton); },
+                   [&](const Transform& t) {
+                     check(t, findings);
+                     check_children({&t.of, 1}, i, findings);
+                   },
+                   [&](const auto& group) {
+                     check(group, findings);
+                     check_children(group.of, i, findings);
+                   }},
+        node.what);
+  }
+  if (!description.root.valid() || description.root.index() >= description.nodes.size())
+    all.push_back(failure("a field without a root"));
+  return all;
+}
+
+}  // namespace marrow

@@ -1,0 +1,23 @@
+// The block kernels compiled for avx512 (see field/trace/CMakeLists.txt for its compiler options).
+#include "field/trace/block_kernels.h"
+
+namespace marrow::avx512 {
+namespace {
+// clang-format off: in this order
+#include "field/trace/kernels/lanes.h"
+#include "field/trace/kernels/sums.h"
+#include "field/trace/kernels/far_on_ray.h"
+#include "field/trace/kernels/iso.h"
+#include "field/trace/kernels/march.h"
+#include "field/trace/kernels/search.h"
+#include "field/trace/kernels/points.h"
+#include "field/trace/kernels/mask.h"
+// clang-format on
+}  // namespace
+
+const BlockKernels& table() {
+  static constexpr BlockKernels kernels{first_root, point_field, margin, mask};
+  return kernels;
+}
+
+}  // namespace marrow::avx512

@@ -1,0 +1,72 @@
+// What lies far from a cube, as Taylor polynomials about its centre: the field f (degree 4), and the
+// potential F with grad F = grad_S f (degree 5, so that grad_S f has degree 4 too).
+//
+// Coordinates are the cube's own: x = (p - centre) / half, so the cube is [-1, 1]^3. All lengths that
+// enter (radii, source positions) are in these units; f is dimensionless, and F here is F / half, so
+// that its gradient in x is grad_S f itself.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "field/math/vec3.h"
+
+namespace marrow {
+
+/// Monomials of degree <= k in three variables: binom(k + 3, 3).
+constexpr std::size_t monomials_to_degree(int k) { return static_cast<std::size_t>((k + 1) * (k + 2) * (k + 3) / 6); }
+
+inline constexpr int field_degree = 4, potential_degree = 5;
+inline constexpr std::size_t monomial_count = monomials_to_degree(potential_degree);  // 56
+
+/// Exponents of the monomials x^a y^b z^c, sorted by degree.
+struct Monomial {
+  int a, b, c;
+  constexpr int degree() const { return a + b + c; }
+};
+extern const std::array<Monomial, monomial_count> monomials;
+std::size_t monomial_index(int a, int b, int c);
+
+using Polynomial = std::array<double, monomial_count>;
+
+/// Sums the Taylor coefficients of w |x - r|^-m over many sources r of one exponent m.
+/// The expansion is the Gegenbauer series, |x - r|^-m = sum_k C_k^(m/2)(cos) |x|^k |r|^-(m+k), whose
+/// terms are collected as moments of r and turned into coefficients once, in add_to().
+class FarMoments {
+ public:
+  explicit FarMoments(int exponent);
+  /// A source at r with f-weight w and radius tau (F-weight w tau).
+  void add(const Vec3d& r, double weight, double radius);
+  void add_to(Polynomial& f, Polynomial& potential) const;
+  bool empty() const { return empty_; }
+
+ private:
+  static constexpr std::size_t moment_count = 56 + 20 + 4;
+  int exponent_;
+  bool empty_ = true;
+  std::array<double, moment_count> f_{}, potential_{};
+};
+
+struct FarField {
+  Polynomial f{};  ///< its coefficients of degree 5 are 0
+  Polynomial potential{};
+  double f_error = 0;         ///< |f - polynomial| over the cube, at most
+  double gradient_error = 0;  ///< |grad_S f - gradient of polynomial| over the cube, at most
+
+  /// The same far field in the coordinates of one of the eight half-sized cubes; `octant` has a bit for each axis.
+  FarField of_child(int octant) const;
+
+  struct Bounds {
+    double f_center;
+    double f_variation;  ///< |f(x) - f_center| over the cube, at most, errors included
+    Vec3d gradient_center;
+    double gradient_variation;  ///< |grad_S f(x) - gradient_center| over the cube, at most, errors included
+  };
+  Bounds bounds() const;
+};
+
+/// psi_P^n(q) = (1-q)^-n - sum_{k<=P} binom(n+k-1,k) q^k: the remainder of the Taylor series of degree P of
+/// d^-n over a ball of radius q d, relative to d^-n (tracing.md B5). 0 <= q < 1; summed without cancellation.
+double taylor_remainder(int exponent, int degree, double q);
+
+}  // namespace marrow

@@ -1,0 +1,157 @@
+#include "field/trace/iso_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "field/blend/correction.h"
+#include "field/math/elementary.h"
+
+namespace marrow {
+namespace {
+
+constexpr int entry_count = 2048;
+constexpr int probes_per_step = 3;
+
+// The smallest v in [low, high] with inside(v), by bisection with a value: `excess` is C - 1 along v, rising.
+template <class Excess>
+double rising_root(const Excess& excess, double low, double high) {
+  double at_low = excess(low), at_high = excess(high);
+  if (at_low >= 0) return low;
+  for (int i = 0; at_high < 0 && i < 60; ++i) {
+    low = high;
+    at_low = at_high;
+    high = high * 2 + 1;
+    at_high = excess(high);
+  }
+  if (at_high < 0) return std::numeric_limits<double>::infinity();
+  int side = 0;  // Illinois' variant of regula falsi: halve the end that stays
+  for (int i = 0; i < 80 && high - low > 1e-13 * (1 + std::fabs(high)); ++i) {
+    double mid = (low * at_high - high * at_low) / (at_high - at_low);
+    if (!(mid > low && mid < high) || i % 8 == 7) mid = 0.5 * (low + high);
+    const double at_mid = excess(mid);
+    if (at_mid < 0) {
+      low = mid;
+      at_low = at_mid;
+      if (side == -1) at_high /= 2;
+      side = -1;
+    } else {
+      high = mid;
+      at_high = at_mid;
+      if (side == 1) at_low /= 2;
+      side = 1;
+      if (at_mid == 0) break;
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+// Points of the quarter plane x, y >= 0 on the line of given u.
+struct TurnedLine {
+  double u, sin_theta, cos_theta;
+  double x(double v) const { return std::max(0.0, v * sin_theta - u * cos_theta); }
+  double y(double v) const { return std::max(0.0, u * sin_theta + v * cos_theta); }
+  double first_v() const {
+    double v = 0;
+    if (sin_theta > 1e-12) v = std::max(v, u * cos_theta / sin_theta);
+    if (cos_theta > 1e-12) v = std::max(v, -u * sin_theta / cos_theta);
+    return v;
+  }
+};
+
+}  // namespace
+
+IsoCurve::IsoCurve(const Correction& correction, double alpha) : two_sided_(alpha < 0) {
+  const double theta = std::max(alpha, 0.0);
+  const bool sum = alpha >= std::numbers::pi / 2 - 1e-12;
+  sin_ = sum ? 1 : sin(theta);
+  cos_ = sum ? 0 : cos(theta);
+  const auto excess = [&](double x, double y) { return correction.value(x, y) - 1; };
+  critical_ = rising_root([&](double x) { return excess(x, 0); }, 1e-3, 8);
+
+  const auto curve = [&](double u) {
+    const TurnedLine line{u, sin_, cos_};
+    const double v0 = line.first_v();
+    return rising_root([&](double v) { return excess(line.x(v), line.y(v)); }, v0, v0 + 4);
+  };
+  // The far end: where the curve nears the axis x = 0, or else (alpha near pi/2) where y is six times the
+  // gradient of the reference curve at the iso-value; no field of positive sources comes near either.
+  constexpr double least_x = 0.02;
+  const double largest_y = 6.0 * (correction.degree() - 1);
+  const double y_end = rising_root([&](double y) { return excess(least_x, y); }, 0, largest_y);
+  u_begin_ = -critical_ * cos_;
+  const double u_end = std::min(y_end * sin_ - least_x * cos_, largest_y * sin_ - least_x * cos_);
+  step_ = (u_end - u_begin_) / (entry_count - 1);
+
+  std::vector<double> value(entry_count), below(entry_count, 0), above(entry_count, 0);
+  for (int i = 0; i < entry_count; ++i) value[static_cast<std::size_t>(i)] = curve(u_begin_ + i * step_);
+  // Between entries the straight line is off by at most twice what three probes find: the error of linear
+  // interpolation is a smooth arch over a step, and where the curve has a kink the probes stand within a
+  // quarter of a step of it.
+  for (std::size_t i = 0; i + 1 < value.size(); ++i) {
+    double low = 0, high = 0;
+    for (int k = 1; k <= probes_per_step; ++k) {
+      const double fraction = static_cast<double>(k) / (probes_per_step + 1);
+      const double exact = curve(u_begin_ + (static_cast<double>(i) + fraction) * step_);
+      const double error = exact - (value[i] + (value[i + 1] - value[i]) * fraction);
+      low = std::min(low, 2 * error);
+      high = std::max(high, 2 * error);
+    }
+    for (const std::size_t j : {i, i + 1}) {
+      below[j] = std::min(below[j], low);
+      above[j] = std::max(above[j], high);
+    }
+  }
+  constexpr double rounding = 4e-7;  // of float entries and of their interpolation in float, relative
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const double slack = rounding * (1 + std::fabs(value[i]));
+    value_.push_back(static_cast<float>(value[i]));
+    lower_.push_back(static_cast<float>(value[i] + below[i] - slack));
+    upper_.push_back(static_cast<float>(value[i] + above[i] + slack));
+  }
+}
+
+IsoCurve::View IsoCurve::view() const {
+  return {.value = value_.data(),
+          .lower = lower_.data(),
+          .size = entry_count,
+          .u_begin = static_cast<float>(u_begin_),
+          .inverse_step = static_cast<float>(1 / step_),
+          .sin_theta = static_cast<float>(sin_),
+          .cos_theta = static_cast<float>(cos_),
+          .two_sided = two_sided_};
+}
+
+double IsoCurve::lower(double u) const {
+  const double at = (u - u_begin_) / step_;
+  if (at <= 0) return lower_.front();
+  if (!(at < entry_count - 1)) return -std::numeric_limits<double>::infinity();
+  const auto i = static_cast<std::size_t>(at);
+  const double fraction = at - static_cast<double>(i);
+  return lower_[i] + (static_cast<double>(lower_[i + 1]) - lower_[i]) * fraction;
+}
+
+double IsoCurve::upper(double u) const {
+  const double at = (u - u_begin_) / step_;
+  if (at <= 0) return upper_.front();
+  if (!(at < entry_count - 1)) return std::numeric_limits<double>::infinity();
+  const auto i = static_cast<std::size_t>(at);
+  const double fraction = at - static_cast<double>(i);
+  return upper_[i] + (static_cast<double>(upper_[i + 1]) - upper_[i]) * fraction;
+}
+
+bool IsoCurve::outside(double x_low, double x_high, double y_high) const {
+  if (!(x_high < 1e30) || !(y_high < 1e30)) return false;
+  const auto below = [&](double x) {
+    return x * sin_ + y_high * cos_ < lower(y_high * sin_ - x * cos_);
+  };
+  return below(x_high) && (!two_sided_ || below(x_low));
+}
+
+bool IsoCurve::inside(double x_low, double y_low) const {
+  if (two_sided_) return false;
+  return x_low * sin_ + y_low * cos_ > upper(y_low * sin_ - x_low * cos_);
+}
+
+}  // namespace marrow

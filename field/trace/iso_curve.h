@@ -1,0 +1,48 @@
+// The curve on which the corrected field is 1, as a table: the test "outside?" without evaluating the operator.
+//
+// In the plane of x = f and y = |grad_S f| the operator C is isotone in both for alpha >= 0 (tracing.md 3.3),
+// so {C < 1} is a region below one curve. It is stored in coordinates turned by theta = max(alpha, 0),
+//   u = y sin theta - x cos theta,   v = x sin theta + y cos theta,
+// because the operator projects along lines of constant v: C(x, y) < 1  <=>  v < V(u), with V nearly constant.
+// For alpha < 0 C is isotone in y and first falls, then rises in x; theta = 0 then gives V(-x) = Y(x), which
+// first rises, then falls, so that its minimum over an interval of x is at an end.
+#pragma once
+
+#include <vector>
+
+namespace marrow {
+
+class Correction;
+
+class IsoCurve {
+ public:
+  explicit IsoCurve(const Correction&, double alpha);
+
+  /// Piecewise linear over u in [u_begin, u_begin + (size - 1) / inverse_step]; entries as float, sorted by u.
+  struct View {
+    const float* value;  ///< V, nearest
+    const float* lower;  ///< below V everywhere, between entries too
+    int size;
+    float u_begin, inverse_step;
+    float sin_theta, cos_theta;
+    bool two_sided;  ///< alpha < 0: "outside" must be tested at both ends of the interval of x
+  };
+  View view() const;
+
+  /// Whether C < 1 for all 0 <= x in [x_low, x_high], 0 <= y <= y_high. Never wrongly true.
+  bool outside(double x_low, double x_high, double y_high) const;
+  /// Whether C > 1 for all x >= x_low, y >= y_low (only known for alpha >= 0; else false). Never wrongly true.
+  bool inside(double x_low, double y_low) const;
+  /// The f with C(f, 0) = 1.
+  double critical_field() const { return critical_; }
+
+ private:
+  double lower(double u) const;
+  double upper(double u) const;
+
+  double sin_, cos_, critical_, u_begin_, step_;
+  bool two_sided_;
+  std::vector<float> value_, lower_, upper_;
+};
+
+}  // namespace marrow

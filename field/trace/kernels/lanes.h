@@ -1,0 +1,64 @@
+// Vectors of 16 floats with sums in one fixed order. Part of block_kernels_<set>.cpp, inside its namespace.
+// Only builtins and functions of these files are used: an inline function of a library, compiled here for a
+// large instruction set, could be the copy that the linker keeps for everybody.
+
+using V16 = float __attribute__((vector_size(64)));
+using V4 = float __attribute__((vector_size(16)));
+
+inline constexpr float infinity = __builtin_inff();
+inline float max_of(float a, float b) { return a > b ? a : b; }
+inline float min_of(float a, float b) { return a < b ? a : b; }
+inline float abs_of(float a) { return __builtin_fabsf(a); }
+inline float root_of(float a) { return __builtin_sqrtf(a); }
+
+inline V16 splat(float s) { return V16{} + s; }
+inline V16 load(const float* p) { return *static_cast<const V16*>(__builtin_assume_aligned(p, 64)); }
+inline V16 root_of(V16 v) {
+  V16 r;
+  for (int i = 0; i < lanes; ++i) r[i] = __builtin_sqrtf(v[i]);
+  return r;
+}
+
+// inv^(m/2) = d^-m. Exponent 0 in the template means known only at run time.
+template <int Exponent>
+inline V16 inverse_power(V16 inv, int exponent) {
+  const int m = Exponent > 0 ? Exponent : exponent;
+  V16 power = (m & 1) ? root_of(inv) : splat(1);
+  for (int k = m / 2; k > 0; --k) power = power * inv;
+  return power;
+}
+
+// Sums over 16 lanes of up to 16 accumulators at once, as a tree: halves, quarters, pairs, single lanes.
+inline void sum_lanes(const V16 (&a)[12], float (&sums)[16]) {
+  V16 b[6], c[3], d[2];
+  for (int i = 0; i < 6; ++i)
+    b[i] = __builtin_shufflevector(a[2 * i], a[2 * i + 1], 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23) +
+           __builtin_shufflevector(a[2 * i], a[2 * i + 1], 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
+  for (int i = 0; i < 3; ++i)
+    c[i] = __builtin_shufflevector(b[2 * i], b[2 * i + 1], 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27) +
+           __builtin_shufflevector(b[2 * i], b[2 * i + 1], 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31);
+  const V16 zero{};
+  for (int i = 0; i < 2; ++i) {
+    const V16 lo = c[2 * i], hi = i == 0 ? c[1] : zero;
+    d[i] = __builtin_shufflevector(lo, hi, 0, 1, 4, 5, 8, 9, 12, 13, 16, 17, 20, 21, 24, 25, 28, 29) +
+           __builtin_shufflevector(lo, hi, 2, 3, 6, 7, 10, 11, 14, 15, 18, 19, 22, 23, 26, 27, 30, 31);
+  }
+  const V16 s = __builtin_shufflevector(d[0], d[1], 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30) +
+                __builtin_shufflevector(d[0], d[1], 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+  __builtin_memcpy(sums, &s, sizeof s);
+}
+
+inline V16 larger(V16 a, V16 b) { return a > b ? a : b; }
+
+inline float largest_lane(V16 v) {
+  v = larger(v, __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7));
+  const V4 low = __builtin_shufflevector(v, v, 0, 1, 2, 3), high = __builtin_shufflevector(v, v, 4, 5, 6, 7);
+  const V4 m = low > high ? low : high, n = __builtin_shufflevector(m, m, 2, 3, 0, 1), k = m > n ? m : n;
+  return max_of(k[0], k[1]);
+}
+
+inline V4 load4(const float* p) {
+  V4 v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
+}

@@ -1,0 +1,127 @@
+// Certified steps along a ray with the field of one level of a block. Part of block_kernels_<set>.cpp.
+
+// Rounding of a sum of positive float terms and of positions: below 4e-6 relative for up to 2000 sources.
+inline constexpr float rounding = 4e-6F;
+
+// The field at one t, raised by the level's certified error, with what bounds it nearby.
+struct Sample {
+  float t;
+  RaySums s;
+  float y;                   // |G|
+  float distance;            // to the nearest source, at most
+  float residual;            // V(u) - v of the raised field: positive where the exact field is surely below 1
+  float nominal;             // the same of the field as summed
+  float slope;               // derivative of the residual along the ray
+  float x_weight, y_weight;  // -d residual / dx, dy
+};
+
+struct Marcher {
+  const BlockView& block;
+  const FieldLevel& level;
+  const LocalRay& ray;
+  FarOnRay far;
+  int evaluations = 0;
+
+  Marcher(const BlockView& b, const FieldLevel& l, const LocalRay& r, float t0, float t1)
+      : block(b), level(l), ray(r), far(l, r, t0, t1) {}
+
+  Sample sample(float t) {
+    ++evaluations;
+    Sample p;
+    p.t = t;
+    p.s = {};
+    const Probe probe{splat(ray.origin[0] + ray.direction[0] * t), splat(ray.origin[1] + ray.direction[1] * t),
+                      splat(ray.origin[2] + ray.direction[2] * t), splat(ray.direction[0]),
+                      splat(ray.direction[1]), splat(ray.direction[2])};
+    V16 nearest{};
+    for_each_list(level, block.degree, RaySummer{probe, nearest, p.s});
+    far.add(t, p.s);
+    p.distance = 0.99999F / root_of(max_of(largest_lane(nearest), 1e-12F));
+    const float yy = p.s.g[0] * p.s.g[0] + p.s.g[1] * p.s.g[1] + p.s.g[2] * p.s.g[2], y = root_of(yy);
+    const float dy = (p.s.g[0] * p.s.dg[0] + p.s.g[1] * p.s.dg[1] + p.s.g[2] * p.s.dg[2]) / max_of(y, 1e-12F);
+    const IsoCurve::View& iso = block.iso;
+    const CurveValue curve = curve_at(iso, turned_u(iso, p.s.f, y));
+    p.nominal = curve.value - turned_v(iso, p.s.f, y);
+    p.x_weight = iso.sin_theta + curve.slope * iso.cos_theta;
+    p.y_weight = iso.cos_theta - curve.slope * iso.sin_theta;
+    p.slope = -p.x_weight * p.s.df - p.y_weight * dy;
+    p.s.f += level.f_error;
+    p.y = y + level.g_error;
+    p.residual = curve_at(iso, turned_u(iso, p.s.f, p.y)).value - turned_v(iso, p.s.f, p.y);
+    if (!(p.residual == p.residual)) p.residual = p.nominal = -1;  // on a source: infinite field
+    return p;
+  }
+
+  // sum_{j=1..m} (m+1-j) a^j for m = degree (field) and degree + 1 (gradient): psi_1^m(q) / q^2 with a = 1/(1-q),
+  // a form of the remainder without cancellation. The second sum is the first plus a + .. + a^(m+1).
+  struct Series {
+    float field, gradient;
+  };
+  Series series_of(float a) const {
+    if (block.degree == 4) {
+      const float a2 = a * a, pair = a + a2, field = (4 * a + 3 * a2) + (a + pair) * a2;
+      return {field, field + (pair + (pair + a2 * a) * a2)};
+    }
+    float field = 0, powers = 1;
+    for (int j = 1; j <= block.degree; ++j) {
+      field = (field + static_cast<float>(j)) * a;
+      powers = 1 + powers * a;
+    }
+    return {field, field + powers * a};
+  }
+
+  // Whether the field is below 1 on all of [t, t + h] (h of either sign): B3 and B4 of tracing.md. Both bounds are
+  // convex in h, so the ends suffice.
+  bool outside_until(const Sample& p, float h) const {
+    const float q = abs_of(h) / p.distance;
+    if (!(q < 0.9F)) return false;
+    const Series series = series_of(1 / (1 - q));
+    const float hh = h * h, bend = (p.s.second * series.field + far.f_curvature) * hh;
+    const float x_end = p.s.f + p.s.df * h + bend;
+    float length2 = 0;
+    for (int i = 0; i < 3; ++i) {
+      const float end = p.s.g[i] + p.s.dg[i] * h;
+      length2 += end * end;
+    }
+    const float y_end = root_of(length2) + (p.s.third * series.gradient + far.g_curvature) * hh + level.g_error;
+    const float x_up = max_of(p.s.f, x_end) * (1 + rounding), y_up = max_of(p.y, y_end) * (1 + rounding);
+    if (!(margin_at(block.iso, x_up, y_up) > 0)) return false;
+    if (!block.iso.two_sided) return true;
+    const float x_low = min_of(p.s.f, p.s.f + p.s.df * h - bend) * (1 - rounding) - 2 * level.f_error;
+    return margin_at(block.iso, max_of(0, x_low), y_up) > 0;
+  }
+
+  // Whether the field is above 1 at t + h, by the same bounds and errors from below (alpha >= 0 only).
+  bool inside_at(const Sample& p, float h) const {
+    const float q = abs_of(h) / p.distance;
+    if (!(q < 0.5F) || block.iso.two_sided) return false;
+    const Series series = series_of(1 / (1 - q));
+    const float hh = h * h;
+    float length2 = 0;
+    for (int i = 0; i < 3; ++i) {
+      const float end = p.s.g[i] + p.s.dg[i] * h;
+      length2 += end * end;
+    }
+    const float x = p.s.f - 2 * level.f_error + p.s.df * h - (p.s.second * series.field + far.f_curvature) * hh;
+    const float y = root_of(length2) - (p.s.third * series.gradient + far.g_curvature) * hh - level.g_error;
+    if (!(x > 0) || !(y > 0)) return false;
+    return curve_at(block.iso, turned_u(block.iso, x, y)).value < turned_v(block.iso, x, y);
+  }
+
+  // The largest certified step from p in direction `sign`, at most `limit`; 0 when none was found.
+  float certified_step(const Sample& p, float sign, float limit) const {
+    if (!(limit > 0)) return 0;
+    const float most = min_of(limit, 0.85F * p.distance);
+    // Margin along the step, to second order: residual - b h - c h^2.
+    const float m = static_cast<float>(block.degree);
+    const float c = p.x_weight * (p.s.second * m * (m + 1) * 0.5F + far.f_curvature) +
+                    p.y_weight * (p.s.third * (m + 1) * (m + 2) * 0.5F + far.g_curvature);
+    const float b = -sign * p.slope;
+    const float model = 2 * p.residual / (b + root_of(max_of(0, b * b + 4 * max_of(c, 0) * p.residual)) + 1e-20F);
+    if (model > 0.8F * most && outside_until(p, sign * most)) return most;
+    float h = min_of(0.85F * model, 0.7F * most);
+    for (int i = 0; i < 5; ++i, h *= 0.5F)
+      if (h > 0 && outside_until(p, sign * h)) return h;
+    return 0;
+  }
+};

@@ -1,0 +1,56 @@
+// The field at single points. Part of block_kernels_<set>.cpp.
+
+float margin(const BlockView& block, const float p[3]) {
+  const Probe probe{splat(p[0]), splat(p[1]), splat(p[2]), splat(1), splat(0), splat(0)};
+  RaySums s{};
+  V16 nearest{};
+  for_each_list(block.fine, block.degree, RaySummer{probe, nearest, s});
+  const V4 far = far_at(block.fine, p[0], p[1], p[2]);
+  float yy = 0;
+  for (int i = 0; i < 3; ++i) yy += (s.g[i] + far[i + 1]) * (s.g[i] + far[i + 1]);
+  const float value = margin_at(block.iso, (s.f + far[0]) * (1 + rounding), root_of(yy) * (1 + rounding));
+  return value == value ? value : -1;
+}
+
+// Derivatives of the far polynomials by rows of monomials: d/dx of x^a y^b z^c is a x^(a-1) y^b z^c, and so on.
+inline void far_derivatives(const FieldLevel& level, const float p[3], V4 (&d)[3]) {
+  float power[3][5];
+  for (int axis = 0; axis < 3; ++axis) {
+    power[axis][0] = 1;
+    for (int k = 1; k < 5; ++k) power[axis][k] = power[axis][k - 1] * p[axis];
+  }
+  int i = 0;
+  for (int degree = 0; degree <= 4; ++degree)
+    for (int a = degree; a >= 0; --a)
+      for (int b = degree - a; b >= 0; --b, ++i) {
+        const int e[3] = {a, b, degree - a - b};
+        const V4 c = load4(level.far + 4 * i);
+        for (int axis = 0; axis < 3; ++axis) {
+          if (e[axis] == 0) continue;
+          float m = static_cast<float>(e[axis]);
+          for (int k = 0; k < 3; ++k) m *= power[k][e[k] - (k == axis ? 1 : 0)];
+          d[axis] += c * m;
+        }
+      }
+}
+
+PointField point_field(const BlockView& block, const float p[3]) {
+  FullSums s{};
+  V16 nearest{};
+  for_each_list(block.fine, block.degree, FullSummer{p, nearest, s});
+  const V4 far = far_at(block.fine, p[0], p[1], p[2]);
+  V4 d[3] = {};
+  far_derivatives(block.fine, p, d);
+  PointField out;
+  out.f = s.f + far[0];
+  out.nearest = 1 / root_of(max_of(largest_lane(nearest), 1e-12F));
+  for (int i = 0; i < 3; ++i) {
+    out.gradient[i] = s.df[i] + d[i][0];
+    out.si_gradient[i] = s.g[i] + far[i + 1];
+    out.hessian[i] = s.h[i] + d[i][i + 1];
+  }
+  out.hessian[3] = s.h[3] + d[0][2];
+  out.hessian[4] = s.h[4] + d[0][3];
+  out.hessian[5] = s.h[5] + d[1][3];
+  return out;
+}

@@ -1,0 +1,187 @@
+// The first root along a stretch of a ray. Part of block_kernels_<set>.cpp.
+
+// `front` is the end of the stretch from t0 that is certified outside; islands are certified stretches beyond it,
+// nearest on top; `inside` is the nearest sample known not to be outside.
+struct Search {
+  static constexpr int most_islands = 8;
+  struct Island {
+    float begin, end;
+    Sample sample;
+  };
+  Marcher& march;
+  float front, end;
+  bool have_last = false, have_inside = false, certified = true;
+  Sample last, inside;  // last: the outside sample whose certificate reaches the front
+  Island islands[most_islands];
+  int island_count = 0;
+
+  Search(Marcher& m, float t0, float t1) : march(m), front(t0), end(t1) {}
+
+  bool missed() const { return !have_inside && front >= end; }
+  bool bracketed() const { return have_inside && island_count == 0; }
+  float gap_end() const { return island_count > 0 ? islands[island_count - 1].begin : have_inside ? inside.t : end; }
+
+  void reach(float t, const Sample& p) {
+    front = t;
+    last = p;
+    have_last = true;
+    while (island_count > 0 && islands[island_count - 1].begin <= front) {
+      const Island& top = islands[--island_count];
+      if (top.end > front) {
+        front = top.end;
+        last = top.sample;
+      }
+    }
+  }
+
+  // How far the certificate of p reaches toward `limit`; exactly `limit` when it gets there.
+  float certified_end(const Sample& p, float sign, float limit) const {
+    const float whole = abs_of(limit - p.t), step = march.certified_step(p, sign, whole);
+    return step >= whole ? limit : p.t + sign * step;
+  }
+
+  void record(const Sample& p) {
+    if (p.residual <= 0) {
+      inside = p;
+      have_inside = true;
+      island_count = 0;
+      return;
+    }
+    const float limit = gap_end();
+    const float begin = certified_end(p, -1, front), finish = certified_end(p, 1, limit);
+    if (begin <= front) reach(finish, p);
+    else if (island_count < most_islands) islands[island_count++] = {begin, finish, p};
+  }
+
+  // Where to look next. Just before an estimated root, so that one certificate from there closes the gap; else in
+  // the middle of the first gap.
+  float guess() const {
+    const float right = gap_end(), gap = right - front;
+    float root = 0.5F * (front + right), back = 0;
+    if (have_last && last.slope < 0) {
+      const float newton = last.t - last.residual / last.slope;
+      if (newton > front && newton < right) {
+        root = bracketed() && inside.slope < 0 ? hermite_root() : newton;
+        back = min_of(0.05F * (root - last.t), 2e-4F * last.distance);
+      }
+    } else if (bracketed() && inside.slope < 0) {
+      const float newton = inside.t - inside.residual / inside.slope;
+      if (newton > front && newton < right) root = newton;
+    }
+    const float inset = 0.02F * gap;
+    return min_of(max_of(root - back, front + min_of(inset, back + 1e-4F)), right - inset);
+  }
+
+  // The root of the cubic that meets residual and slope at both ends of the bracket.
+  float hermite_root() const {
+    const float h = inside.t - last.t, p0 = last.residual, p1 = inside.residual;
+    const float d0 = last.slope * h, d1 = inside.slope * h;
+    float u = p0 / (p0 - p1);
+    for (int k = 0; k < 3; ++k) {
+      const float u2 = u * u, u3 = u2 * u;
+      const float v = p0 * (1 - 3 * u2 + 2 * u3) + d0 * (u - 2 * u2 + u3) + p1 * (3 * u2 - 2 * u3) + d1 * (u3 - u2);
+      const float dv =
+          p0 * (6 * u2 - 6 * u) + d0 * (1 - 4 * u + 3 * u2) + p1 * (6 * u - 6 * u2) + d1 * (3 * u2 - 2 * u);
+      if (dv < 0) u -= v / dv;
+      u = min_of(1, max_of(0, u));
+    }
+    return last.t + u * h;
+  }
+
+  // Newton's root from the last outside sample, when it is proved: the certificate reaches it to within the
+  // shortest gap, the field is above 1 just behind it, and the step is so short that Newton's error, its square,
+  // is below 1e-6 of the distance to the skeleton.
+  bool pinned(float& root) const {
+    if (!have_last || !(last.slope < 0)) return false;
+    const float step = -last.residual / last.slope, tolerance = shortest_gap * last.distance;
+    root = last.t + step;
+    if (!(step < 6e-4F * last.distance) || !(root - front < tolerance) || !(root <= end)) return false;
+    return (bracketed() && inside.t - root < tolerance) || march.inside_at(last, step + tolerance);
+  }
+
+  // A gap too short to decide: with an inside sample behind it, its middle is the root; else a grazing touch, left.
+  bool give_up_gap(float& root) {
+    const float right = gap_end();
+    if (bracketed()) {
+      root = 0.5F * (front + right);
+      return true;
+    }
+    certified = false;
+    reach(right, island_count > 0 ? islands[island_count - 1].sample : last);
+    return false;
+  }
+};
+
+inline constexpr int most_samples = 200;
+
+// The coarse level first: it finds where the surface may be, at a fraction of the cost. Returns false for a miss;
+// else `s.front` is certified and `guess` is near the root.
+inline bool coarse_search(Search& s, float t0, float t1, bool any, bool& surely_inside, float& guess) {
+  float next = 0.5F * (t0 + t1);
+  for (int i = 0; i < most_samples; ++i) {
+    const Sample p = s.march.sample(next);
+    s.record(p);
+    if (s.missed()) return false;
+    if (any && p.residual <= 0 && s.march.inside_at(p, 0)) {
+      surely_inside = true;
+      return true;
+    }
+    next = s.guess();
+    const float gap = s.gap_end() - s.front;
+    if (s.bracketed() && (gap < 0.05F * p.distance || (s.have_last && next - s.front < 0.02F * p.distance))) break;
+    if (gap < 1e-3F * p.distance) break;
+  }
+  guess = s.guess();
+  if (s.have_last && s.last.slope < 0) {  // from the root of the raised field to that of the field itself
+    const float shift = (s.last.residual - s.last.nominal) / s.last.slope;
+    if (guess + shift < s.end) guess += shift;
+  }
+  return true;
+}
+
+inline Root fine_search(Search& s, float guess, bool any) {
+  Root root;
+  for (int i = 0; i < most_samples; ++i) {
+    const Sample p = s.march.sample(guess);
+    s.record(p);
+    if (s.missed()) return root;
+    root.certified = s.certified;
+    root.hit = s.pinned(root.t);
+    if (!root.hit && any && s.have_inside) {
+      root.hit = true;
+      root.t = s.inside.t;
+    }
+    if (root.hit) return root;
+    if (s.gap_end() - s.front < shortest_gap * p.distance) {
+      root.hit = s.give_up_gap(root.t);
+      root.certified = s.certified;
+      if (root.hit || s.missed()) return root;
+    }
+    guess = s.guess();
+  }
+  root.certified = false;
+  root.hit = s.have_inside;
+  root.t = s.gap_end();
+  return root;
+}
+
+Root first_root(const BlockView& block, const LocalRay& ray, float t0, float t1, bool any) {
+  Marcher coarse(block, block.coarse, ray, t0, t1);
+  Search approach(coarse, t0, t1);
+  bool surely_inside = false;
+  float guess = t0;
+  Root root;
+  if (coarse_search(approach, t0, t1, any, surely_inside, guess)) {
+    if (surely_inside) {
+      root.hit = true;
+      root.t = approach.inside.t;
+    } else {
+      Marcher fine(block, block.fine, ray, approach.front, t1);
+      Search search(fine, approach.front, t1);
+      root = fine_search(search, max_of(guess, approach.front), any);
+      root.evaluations = fine.evaluations;
+    }
+  }
+  root.evaluations += coarse.evaluations;
+  return root;
+}

@@ -1,0 +1,134 @@
+// Sums over the sources of one level of a block. Part of block_kernels_<set>.cpp.
+
+// At p, with derivatives along the unit vector e (tracing.md 3.1).
+struct RaySums {
+  float f, df;        // sum w d^-m and its derivative
+  float g[3], dg[3];  // G = grad_S f and its derivative
+  float second;       // sum w d^-(m+2) (M2)
+  float third;        // at least sum m w tau d^-(m+3) (m M3)
+};
+
+struct Probe {
+  V16 px, py, pz, ex, ey, ez;
+};
+
+template <int Exponent>
+inline void add_sums(const float* group, int groups, int exponent, const Probe& probe, V16& nearest, RaySums& out) {
+  V16 a[12] = {};
+  for (int k = 0; k < groups; ++k, group += floats_per_group) {
+    const V16 dx = probe.px - load(group), dy = probe.py - load(group + 16), dz = probe.pz - load(group + 32);
+    const V16 weight = load(group + 48), radius = load(group + 64);
+    const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz);
+    const V16 w0 = weight * inverse_power<Exponent>(inv, exponent);
+    const V16 w2 = w0 * inv, k2 = w2 * radius, k4 = k2 * inv;
+    const V16 along = dx * probe.ex + dy * probe.ey + dz * probe.ez, ka = k4 * along;
+    a[0] += w0;
+    a[1] += w2 * along;
+    a[2] += w2;
+    a[3] += k2;
+    a[4] += k4;
+    a[5] += k2 * dx;
+    a[6] += k2 * dy;
+    a[7] += k2 * dz;
+    a[8] += ka * dx;
+    a[9] += ka * dy;
+    a[10] += ka * dz;
+    nearest = larger(nearest, inv);
+  }
+  float s[16];
+  sum_lanes(a, s);
+  const float m = static_cast<float>(Exponent > 0 ? Exponent : exponent);
+  out.f += s[0];
+  out.df -= m * s[1];
+  out.second += s[2];
+  out.third += m * root_of(s[3] * s[4]);  // Cauchy-Schwarz: M3^2 <= K2 K4
+  const float e[3] = {probe.ex[0], probe.ey[0], probe.ez[0]};
+  for (int i = 0; i < 3; ++i) {
+    out.g[i] -= m * s[5 + i];
+    out.dg[i] += m * (m + 2) * s[8 + i] - m * e[i] * s[3];
+  }
+}
+
+// f, grad f, G and the derivative of G in all directions (xx yy zz xy xz yz).
+struct FullSums {
+  float f, df[3], g[3], h[6];
+};
+
+template <int Exponent>
+inline void add_full_sums(const float* group, int groups, int exponent, const float p[3], V16& nearest, FullSums& out) {
+  V16 a[12] = {}, b[12] = {};
+  for (int k = 0; k < groups; ++k, group += floats_per_group) {
+    const V16 dx = p[0] - load(group), dy = p[1] - load(group + 16), dz = p[2] - load(group + 32);
+    const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz);
+    const V16 w0 = load(group + 48) * inverse_power<Exponent>(inv, exponent);
+    const V16 w2 = w0 * inv, k2 = w2 * load(group + 64), k4 = k2 * inv;
+    const V16 kx = k4 * dx, ky = k4 * dy, kz = k4 * dz;
+    a[0] += w0;
+    a[1] += w2 * dx;
+    a[2] += w2 * dy;
+    a[3] += w2 * dz;
+    a[4] += k2;
+    a[5] += k2 * dx;
+    a[6] += k2 * dy;
+    a[7] += k2 * dz;
+    b[0] += kx * dx;
+    b[1] += ky * dy;
+    b[2] += kz * dz;
+    b[3] += kx * dy;
+    b[4] += kx * dz;
+    b[5] += ky * dz;
+    nearest = larger(nearest, inv);
+  }
+  float s[16], t[16];
+  sum_lanes(a, s);
+  sum_lanes(b, t);
+  const float m = static_cast<float>(Exponent > 0 ? Exponent : exponent);
+  out.f += s[0];
+  for (int i = 0; i < 3; ++i) {
+    out.df[i] -= m * s[1 + i];
+    out.g[i] -= m * s[5 + i];
+    out.h[i] += m * (m + 2) * t[i] - m * s[4];
+    out.h[3 + i] += m * (m + 2) * t[3 + i];
+  }
+}
+
+inline const float* point_sources(const FieldLevel& l) {
+  return l.sources + static_cast<long>(l.curve_groups) * floats_per_group;
+}
+
+// Calls sums<Exponent>(groups, count, exponent) for the curves (exponent: the degree) and for the points (one less).
+template <class Sums>
+inline void for_each_list(const FieldLevel& l, int degree, const Sums& sums) {
+  if (l.curve_groups > 0) switch (degree) {
+      case 3: sums.template add<3>(l.sources, l.curve_groups, 3); break;
+      case 4: sums.template add<4>(l.sources, l.curve_groups, 4); break;
+      case 5: sums.template add<5>(l.sources, l.curve_groups, 5); break;
+      default: sums.template add<0>(l.sources, l.curve_groups, degree);
+    }
+  if (l.point_groups > 0) switch (degree) {
+      case 3: sums.template add<2>(point_sources(l), l.point_groups, 2); break;
+      case 4: sums.template add<3>(point_sources(l), l.point_groups, 3); break;
+      case 5: sums.template add<4>(point_sources(l), l.point_groups, 4); break;
+      default: sums.template add<0>(point_sources(l), l.point_groups, degree - 1);
+    }
+}
+
+struct RaySummer {
+  const Probe& probe;
+  V16& nearest;
+  RaySums& out;
+  template <int Exponent>
+  void add(const float* group, int groups, int exponent) const {
+    add_sums<Exponent>(group, groups, exponent, probe, nearest, out);
+  }
+};
+
+struct FullSummer {
+  const float* p;
+  V16& nearest;
+  FullSums& out;
+  template <int Exponent>
+  void add(const float* group, int groups, int exponent) const {
+    add_full_sums<Exponent>(group, groups, exponent, p, nearest, out);
+  }
+};

@@ -1,0 +1,53 @@
+// Which pieces a cube must list one by one, and which it may fold into its far field.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "field/trace/far_field.h"
+#include "field/trace/pieces.h"
+#include "field/trace/quadrature.h"
+
+namespace marrow {
+
+using PieceIndex = std::uint32_t;
+
+/// The share of the total error that one piece may cause in f and in |grad_S f|.
+struct ErrorBudget {
+  double field, gradient;
+};
+
+/// Splits at certified errors: the Taylor remainder B5 of tracing.md and the quadrature bound of GaussError.
+class NearFar {
+ public:
+  NearFar(int degree, ErrorBudget);
+
+  /// Adds the far ones of `candidates` to `far` (in the coordinates of the cube) and returns the near ones, in order.
+  std::vector<PieceIndex> split(std::span<const Piece>, std::span<const PieceIndex> candidates, const Vec3d& center,
+                                double half, FarField& far) const;
+
+  const ErrorBudget& budget() const { return budget_; }
+  struct Rule {
+    int nodes = 0;  ///< 0: no rule is good enough
+    GaussError::Bound error{};
+  };
+  /// The smallest rule whose error at this distance is within `share` of the budget.
+  Rule rule_for(const Piece&, double distance, double share) const;
+
+ private:
+  struct Remainders {
+    double field, gradient;
+  };
+  Remainders remainders(bool point, double q) const;
+  bool is_far(const Piece&, double distance, double cube_radius, FarField& far) const;
+
+  static constexpr int table_size = 256;
+  static constexpr double largest_ratio = 0.5;  ///< of cube radius to distance: beyond it nothing is far
+  int degree_;
+  ErrorBudget budget_;
+  GaussError quadrature_;
+  std::vector<Remainders> curve_, point_;  // psi at ratios i / table_size * largest_ratio
+};
+
+}  // namespace marrow

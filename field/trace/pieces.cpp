@@ -1,0 +1,97 @@
+#include "field/trace/pieces.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "field/blend/blend_field.h"
+#include "field/kernel/inverse_family.h"
+#include "field/math/elementary.h"
+
+namespace marrow {
+
+double distance(const Piece& piece, const Vec3d& p) {
+  const Vec3d along = piece.to - piece.from, w = p - piece.from;
+  const double l2 = length_squared(along);
+  const double t = l2 > 0 ? std::clamp(dot(w, along) / l2, 0.0, 1.0) : 0.0;
+  return length(w - along * t);
+}
+
+PieceCutter::PieceCutter(int degree, double critical_field)
+    : degree_(degree), normalisation_(curve_normalisation(degree)), critical_field_(critical_field) {}
+
+// At a point p at distance e from a straight piece, the source at arc length s from the nearest point is at most
+// e + s away, and on at least one side... the two sides' integrals are concave in their lengths, so the least
+// f is that of one side of the full length L:
+//   f >= tau_min^(n-1) / (N (n-1)) (e^-(n-1) - (e + L)^-(n-1)).
+// The largest e for which this exceeds the critical field is found by bisection.
+double PieceCutter::inside_distance(double smallest_radius, double length) const {
+  const double needed =
+      critical_field_ * 1.001 * normalisation_ * (degree_ - 1) / integer_power(smallest_radius / length, degree_ - 1);
+  const auto enough = [&](double e) {  // e in units of the length
+    return 1 / integer_power(e, degree_ - 1) - 1 / integer_power(e + 1, degree_ - 1) > needed;
+  };
+  double low = 0, high = 1;
+  while (enough(high) && high < 1e9) {
+    low = high;
+    high *= 2;
+  }
+  for (int i = 0; i < 40; ++i) {
+    const double mid = 0.5 * (low + high);
+    (enough(mid) ? low : high) = mid;
+  }
+  return low * length;
+}
+
+Piece PieceCutter::segment_piece(const Vec3d& from, const Vec3d& to, double radius_from, double radius_to) const {
+  Piece p{.from = from, .to = to, .radius_from = radius_from, .radius_to = radius_to};
+  p.length = length(to - from);
+  p.radius = std::max(radius_from, radius_to);
+  p.mass = p.length * integer_power(p.radius, degree_ - 1) / normalisation_;
+  return p;
+}
+
+Piece PieceCutter::part(const Piece& piece, double begin, double end) const {
+  const double slope = piece.radius_to - piece.radius_from;
+  Piece p = segment_piece(lerp(piece.from, piece.to, begin), lerp(piece.from, piece.to, end),
+                          piece.radius_from + slope * begin, piece.radius_from + slope * end);
+  p.inside_distance = piece.inside_distance;
+  p.primitive = piece.primitive;
+  return p;
+}
+
+std::vector<Piece> PieceCutter::cut(const BlendField& blend) const {
+  std::vector<Piece> pieces;
+  for (std::size_t i = 0; i < blend.segments.size(); ++i) {
+    const SegmentSkeleton& s = blend.segments.skeletons[i];
+    Piece whole = segment_piece(s.from, s.to, s.radius_from, s.radius_to);
+    whole.primitive = static_cast<std::uint32_t>(i);
+    // Steps of at most one radius, from the thick end on; equal where the radius is constant.
+    const bool reversed = s.radius_to > s.radius_from;
+    double done = 0;
+    while (done < 1) {
+      const double at = reversed ? 1 - done : done;
+      const double radius = s.radius_from + (s.radius_to - s.radius_from) * at;
+      const double left = 1 - done, step_length = std::max(radius, 1e-3 * whole.radius);
+      const double count = std::ceil(left * whole.length / step_length - 1e-9);
+      const double step = count <= 1 ? left : left / count;
+      const double next = count <= 1 ? 1 : done + step;
+      Piece p = reversed ? part(whole, 1 - next, 1 - done) : part(whole, done, next);
+      p.inside_distance = inside_distance(std::min(p.radius_from, p.radius_to), p.length);
+      pieces.push_back(p);
+      done = next;
+    }
+  }
+  for (std::size_t i = 0; i < blend.points.size(); ++i) {
+    const PointSkeleton& s = blend.points.skeletons[i];
+    Piece p{.from = s.at, .to = s.at, .radius_from = s.radius, .radius_to = s.radius};
+    p.radius = s.radius;
+    p.mass = integer_power(s.radius, degree_ - 1);
+    // (tau/d)^(n-1) > f_critical
+    p.inside_distance = s.radius * pow(critical_field_ * 1.001, -1.0 / (degree_ - 1));
+    p.primitive = static_cast<std::uint32_t>(i);
+    pieces.push_back(p);
+  }
+  return pieces;
+}
+
+}  // namespace marrow

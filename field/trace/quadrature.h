@@ -1,0 +1,43 @@
+// Gauss-Legendre rules of any small size, and how far off they can be for a piece of skeleton.
+#pragma once
+
+#include <array>
+#include <span>
+
+namespace marrow {
+
+inline constexpr int max_gauss_nodes = 12;
+
+/// Nodes in (0, 1); the weights sum to 1.
+struct GaussNodes {
+  std::span<const double> positions, weights;
+};
+
+/// The rule with `count` nodes, 1 <= count <= max_gauss_nodes.
+GaussNodes gauss_legendre(int count);
+
+/// Bounds the error of Gauss-Legendre quadrature for the integrals of one straight piece,
+///   f = 1/N int tau^(n-1) d^-n ds   and   grad_S f = -n/N int tau^n (p-q) d^-(n+2) ds,
+/// at any p whose distance from the piece is at least `distance`.
+///
+/// Derivation. The m-node rule on a length L has the error c_m L^(2m+1) |F^(2m)(xi)| / (2m)! with
+/// c_m = (m!)^4 / ((2m+1) ((2m)!)^2). The k-th derivative of d^-n along a line is, over k!, at most
+/// binom(n+k-1, k) d^-(n+k), because Gegenbauer polynomials are largest at 1 [tracing.md 3.1]; that
+/// of the vector (p-q) d^-(n+2) at most binom(n+k, k) d^-(n+1+k). Leibniz' rule with the linear radius
+/// gives at most the factor (1 + |slope| d / tau)^(exponent of tau).
+class GaussError {
+ public:
+  explicit GaussError(int degree);
+  struct Bound {
+    double field;     ///< of f
+    double gradient;  ///< of |grad_S f|
+  };
+  /// `mass` = L tau_max^(n-1) / N, `largest_radius` = tau_max, `slope` = |d tau / ds|.
+  Bound bound(int nodes, double mass, double largest_radius, double slope, double length, double distance) const;
+
+ private:
+  int degree_;
+  std::array<double, max_gauss_nodes + 1> field_{}, gradient_{};  // c_m binom, for each m
+};
+
+}  // namespace marrow

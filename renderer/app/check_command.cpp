@@ -1,0 +1,41 @@
+// marrow check: every mistake of a scene, without rendering it.
+#include <cstdio>
+
+#include <fmt/core.h>
+
+#include "renderer/app/commands.h"
+#include "renderer/app/print.h"
+#include "renderer/app/report.h"
+#include "renderer/app/scene_input.h"
+
+namespace marrow {
+namespace {
+
+std::string counted(std::size_t count, const char* noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string summary(const LoadedScene& scene) {
+  std::size_t primitives = 0;
+  for (const auto& field : scene.fields) primitives += primitive_count(field.program);
+  const auto& d = scene.description;
+  return fmt::format("{} ({} of field primitives: {}), {}, {}", counted(d.objects.size(), "object"),
+                     scene.fields.size(), primitives, counted(d.materials.size(), "material"),
+                     counted(d.lights.size(), "light"));
+}
+
+}  // namespace
+
+ExitCode run(const CheckCommand& command) {
+  ReadRecord record;
+  const auto scene = load(command.scene, record);
+  Diagnostics all = scene ? Diagnostics{} : scene.why();
+  all.insert(all.end(), record.warnings.begin(), record.warnings.end());
+  if (command.json) say(to_json(all) + '\n');
+  else report(all, record.sources, ExitCode::Ok);
+  if (!scene) return exit_code_of_failed_load(command.scene);
+  if (!command.json) say(fmt::format("{}: ok: {}\n", command.scene.path.string(), summary(*scene)));
+  return ExitCode::Ok;
+}
+
+}  // namespace marrow

@@ -1,0 +1,78 @@
+// What can be asked of the program: one struct a sub-command, and one function that does it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "renderer/app/crop.h"
+#include "renderer/app/exit_code.h"
+#include "renderer/slice/slice.h"
+
+namespace marrow {
+
+struct SceneInput {
+  std::filesystem::path path;
+  std::vector<std::string> overrides;  ///< "path.to.value=text", as ReadOptions takes them
+};
+
+enum class ProgressStyle { None, Auto, Bar, Plain, Json };
+
+struct RenderCommand {
+  SceneInput scene;
+  std::optional<std::filesystem::path> output,
+      png;  ///< neither: SCENE's stem with .exr and .png, in the current folder
+  std::optional<int> samples_per_pixel;
+  std::optional<double> time_limit_s;
+  std::optional<std::uint64_t> seed;
+  std::optional<Crop> crop;
+  int threads = 0;  ///< 0: all that the process may use
+  std::string isa;  ///< empty: the best of this machine
+  std::string view;
+  std::optional<std::filesystem::path> ocio;
+  ProgressStyle progress = ProgressStyle::Auto;
+  bool strict = false;
+};
+
+struct CheckCommand {
+  SceneInput scene;
+  bool json = false;
+};
+
+struct SchemaCommand {
+  bool markdown = false;
+};
+
+struct ProbeCommand {
+  SceneInput scene;
+  std::optional<std::string> object;
+  std::filesystem::path points;  ///< "-": standard input
+};
+
+struct InfoCommand {
+  SceneInput scene;
+  bool json = false;
+  int threads = 0;
+};
+
+struct SliceCommand {
+  SceneInput scene;
+  std::optional<std::string> object;
+  std::filesystem::path output = "slice.png";
+  SliceRequest request;
+};
+
+using Command = std::variant<RenderCommand, CheckCommand, SchemaCommand, ProbeCommand, InfoCommand, SliceCommand>;
+
+ExitCode run(const RenderCommand&);
+ExitCode run(const CheckCommand&);
+ExitCode run(const SchemaCommand&);
+ExitCode run(const ProbeCommand&);
+ExitCode run(const InfoCommand&);
+ExitCode run(const SliceCommand&);
+
+}  // namespace marrow

@@ -1,0 +1,256 @@
+// CLI11 speaks here and nowhere else.
+#include "renderer/app/options.h"
+
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+
+#include "renderer/app/print.h"
+#include "renderer/app/text.h"
+#include "renderer/output/colormap.h"
+#include "renderer/scene/suggestion.h"
+
+namespace marrow {
+namespace {
+
+/// An option whose text a function of ours reads; its message tells what is wrong.
+template <class Target, class T>
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, Target& target,
+                        const std::function<Result<T>(const std::string&)>& parse, const std::string& help) {
+  return app.add_option_function<std::string>(
+      name,
+      [&target, name, parse](const std::string& text) {
+        auto value = parse(text);
+        if (!value) throw CLI::ValidationError(name, value.why().front().message);
+        target = *value;
+      },
+      help);
+}
+
+/// CLI11 would read a path as a quoted word; here it is taken as it stands.
+template <class Target>
+CLI::Option* add_path(CLI::App& app, const std::string& name, Target& target, const std::string& help) {
+  const auto take = [](const std::string& text) -> Result<std::filesystem::path> {
+    if (text.empty()) return failure("an empty name of a file");
+    return std::filesystem::path(text);
+  };
+  return add_parsed<Target, std::filesystem::path>(app, name, target, take, help)->type_name("FILE");
+}
+
+void add_scene(CLI::App& app, SceneInput& scene) {
+  add_path(app, "scene", scene.path, "Scene file (YAML)")->required()->type_name("SCENE");
+  app.add_option("-D", scene.overrides, "Sets a value of the scene, such as -D camera.fov=20; may be repeated")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+}
+
+void add_threads(CLI::App& app, int& threads) {
+  app.add_option("-t,--threads", threads, "Threads; default: all that the process may use")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+}
+
+Result<double> duration(const std::string& text) {
+  if (const auto seconds = parse_duration(text)) return *seconds;
+  return failure("a time is 90s, 10m or 1h30m; found '" + text + "'");
+}
+
+Result<std::pair<double, double>> range(const std::string& text) {
+  const auto parts = split(text, ':');
+  if (parts.size() == 2) {
+    const auto low = parse_decimal(parts[0]), high = parse_decimal(parts[1]);
+    if (low && high && *low < *high) return std::pair{*low, *high};
+  }
+  return failure("a range is LOW:HIGH with LOW < HIGH; found '" + text + "'");
+}
+
+Result<SliceWindow> window(const std::string& text) {
+  const auto parts = split(text, ',');
+  std::vector<double> edges;
+  for (const auto part : parts)
+    if (const auto edge = parse_decimal(part)) edges.push_back(*edge);
+  if (parts.size() == 4 && edges.size() == 4 && edges[0] < edges[2] && edges[1] < edges[3])
+    return SliceWindow{edges[0], edges[1], edges[2], edges[3]};
+  return failure("a window is u0,v0,u1,v1 in scene units with u0 < u1 and v0 < v1; found '" + text + "'");
+}
+
+void describe(CLI::App& app, RenderCommand& c) {
+  static const std::map<std::string, ProgressStyle> styles{{"auto", ProgressStyle::Auto},
+                                                           {"bar", ProgressStyle::Bar},
+                                                           {"plain", ProgressStyle::Plain},
+                                                           {"json", ProgressStyle::Json}};
+  add_scene(app, c.scene);
+  add_path(app, "-o,--output", c.output, "Picture to write, .exr or .png; default: SCENE's stem, both");
+  add_path(app, "--png", c.png, "PNG to write, through the view");
+  app.add_option("--spp", c.samples_per_pixel, "Samples per pixel")->check(CLI::Range(1, 1 << 24))->type_name("N");
+  add_parsed<std::optional<double>, double>(app, "--time", c.time_limit_s, duration, "Stop after this time")
+      ->type_name("90s|10m|1h30m");
+  app.add_option("--seed", c.seed, "Seed of the samples")->type_name("N");
+  add_threads(app, c.threads);
+  add_parsed<std::optional<Crop>, Crop>(app, "--crop", c.crop, parse_crop, "Part of the film, in pixels or percent")
+      ->type_name("x0,y0,x1,y1");
+  app.add_option("--view", c.view, "View of the display for the PNG")->type_name("NAME");
+  add_path(app, "--ocio", c.ocio, "OpenColorIO configuration; default: $OCIO, else the built-in one");
+  app.add_option("--isa", c.isa, "Instruction set for tracing; the picture is the same for all")
+      ->check(CLI::IsMember({"sse2", "sse4.2", "avx", "avx2", "avx512"}));
+  auto* progress = app.add_option("--progress", c.progress, "auto, bar, plain or json (lines on standard error)");
+  progress->transform(CLI::CheckedTransformer(styles).description(""))->type_name("STYLE");
+  app.add_flag_callback(
+         "-q,--quiet", [&c] { c.progress = ProgressStyle::None; }, "No progress, only problems")
+      ->excludes(progress);
+  app.add_flag("--strict", c.strict, "Exit 1 when the picture may be wrong (samples left out, rays not certified)");
+  app.footer(
+      "Examples:\n"
+      "  marrow render neuron.yaml                       neuron.exr and neuron.png\n"
+      "  marrow render neuron.yaml -o try.png --spp 4    a quick look\n"
+      "  marrow render neuron.yaml -o a.exr --time 10m   as good as ten minutes allow\n"
+      "  marrow render neuron.yaml --crop 25%,25%,75%,75% -D camera.fov=20\n"
+      "SIGINT or SIGTERM: what is finished is written and the exit code is 75.");
+}
+
+void describe(CLI::App& app, CheckCommand& c) {
+  add_scene(app, c.scene);
+  const auto use_json = [&c](const std::string& format) { c.json = format == "json"; };
+  app.add_option_function<std::string>("--format", use_json, "text, or json for editors")
+      ->check(CLI::IsMember({"text", "json"}));
+  app.footer("Example:\n  marrow check neuron.yaml    every mistake at once; exit 65 if there is one");
+}
+
+void describe(CLI::App& app, SchemaCommand& c) {
+  app.add_flag("--markdown", c.markdown, "As text for readers instead");
+  app.footer(
+      "Example:\n  marrow schema > marrow.schema.json\nA scene whose first line is\n"
+      "  # yaml-language-server: $schema=./marrow.schema.json\nis then checked and completed by editors.");
+}
+
+void describe(CLI::App& app, ProbeCommand& c) {
+  add_scene(app, c.scene);
+  app.add_option("--object", c.object, "Object to evaluate; may be left out if only one is a field")->type_name("NAME");
+  add_path(app, "--points", c.points, "Points, one 'x y z' a line; - is standard input")->required();
+  app.add_option_function<std::string>(
+         "--format", [](const std::string&) {}, "json, the only one so far")
+      ->check(CLI::IsMember({"json"}));
+  app.footer("Example:\n  echo 0 0 1.5 | marrow probe two_points.yaml --object pair --points - --format json");
+}
+
+void describe(CLI::App& app, InfoCommand& c) {
+  add_scene(app, c.scene);
+  app.add_flag("--json", c.json, "As JSON");
+  add_threads(app, c.threads);
+  app.footer("Example:\n  marrow info neuron.yaml    primitives, cells, memory, bounds, lights, materials");
+}
+
+void describe(CLI::App& app, SliceCommand& c) {
+  add_scene(app, c.scene);
+  const std::function<Result<std::pair<int, double>>(const std::string&)> plane = parse_plane;
+  app.add_option_function<std::string>(
+         "--plane",
+         [&c, plane](const std::string& text) {
+           const auto parsed = plane(text);
+           if (!parsed) throw CLI::ValidationError("--plane", parsed.why().front().message);
+           c.request.axis = parsed->first;
+           c.request.offset = parsed->second;
+         },
+         "Plane, such as z=0")
+      ->required()
+      ->type_name("AXIS=OFFSET");
+  app.add_option("--object", c.object, "Object to paint; default: the largest value of all fields")->type_name("NAME");
+  add_path(app, "-o,--output", c.output, ".png (false colour) or .exr (raw numbers); default: slice.png");
+  using Range = std::pair<double, double>;
+  add_parsed<std::optional<Range>, Range>(app, "--range", c.request.range, range, "Range of the colours")
+      ->type_name("LOW:HIGH");
+  add_parsed<std::optional<SliceWindow>, SliceWindow>(app, "--window", c.request.window, window,
+                                                      "Part of the plane, in scene units")
+      ->type_name("u0,v0,u1,v1");
+  app.add_option("--width", c.request.width, "Pixels of the field")->check(CLI::Range(1, 1 << 15))->type_name("N");
+  app.add_option("--colormap", c.request.colormap, "Colours")->check(CLI::IsMember(Colormap::names()));
+  add_threads(app, c.request.threads);
+  app.footer(
+      "Examples:\n  marrow slice neuron.yaml --plane z=0\n"
+      "  marrow slice neuron.yaml --plane y=-1.5 -o field.exr --window -2,-2,2,2 --width 2048");
+}
+
+ExitCode usage_error(const std::string& message, const std::string& hint, const std::string& help) {
+  complain(fmt::format("marrow: {}{}\n  {} --help explains\n", message, hint.empty() ? "" : "; " + hint, help));
+  return ExitCode::Usage;
+}
+
+std::vector<std::string> names_of(const std::vector<CLI::App*>& commands) {
+  std::vector<std::string> names;
+  for (const auto* command : commands) names.push_back(command->get_name());
+  return names;
+}
+
+std::vector<std::string> options_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const auto* option : app.get_options())
+    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+// CLI11 has its own exit codes and wording; what a caller sees is ours.
+ExitCode explain(const CLI::App& app, const CLI::ParseError& error) {
+  const auto chosen = app.get_subcommands();
+  const CLI::App& speaker = chosen.empty() ? app : *chosen.front();
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+    say(error.get_name() == "CallForVersion" ? std::string(error.what()) + "\n" : app.help());
+    return ExitCode::Ok;
+  }
+  const std::string help = chosen.empty() ? "marrow" : "marrow " + speaker.get_name();
+  const auto extras = speaker.remaining();
+  if (error.get_name() != "ExtrasError" || extras.empty()) return usage_error(error.what(), "", help);
+  const auto guess = nearest(extras.front(), options_of(speaker));
+  return usage_error("'" + extras.front() + "' was not expected", guess ? "did you mean " + *guess + "?" : "", help);
+}
+
+}  // namespace
+
+std::variant<Command, ExitCode> parse_options(int argc, const char* const* argv) {
+  CLI::App app{"Marrow traces rays to implicit surfaces grown on skeletons.", "marrow"};
+  app.set_version_flag("--version", "marrow " MARROW_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "marrow COMMAND --help explains a command. Exit codes: 0 done, 2 command line, 65 bad scene,\n"
+      "66 no input, 69 not available, 70 internal error, 73 and 74 cannot write, 75 interrupted.");
+
+  RenderCommand render;
+  CheckCommand check;
+  SchemaCommand schema;
+  ProbeCommand probe;
+  InfoCommand info;
+  SliceCommand slice;
+  const auto add = [&app](const char* name, const char* help, auto& command) {
+    auto* sub = app.add_subcommand(name, help);
+    describe(*sub, command);
+    return sub;
+  };
+  const std::vector<std::pair<CLI::App*, std::function<Command()>>> commands{
+      {add("render", "Makes a picture of a scene", render), [&] { return render; }},
+      {add("check", "Tells every mistake of a scene", check), [&] { return check; }},
+      {add("info", "Tells what a scene is made of", info), [&] { return info; }},
+      {add("slice", "Paints a field on an axis plane", slice), [&] { return slice; }},
+      {add("probe", "Evaluates a field at points", probe), [&] { return probe; }},
+      {add("schema", "Prints the scene format as JSON Schema", schema), [&] { return schema; }},
+  };
+
+  const auto names = names_of(app.get_subcommands({}));
+  if (argc > 1 && argv[1][0] != '-' && std::find(names.begin(), names.end(), argv[1]) == names.end())
+    return usage_error(fmt::format("there is no command '{}'", argv[1]), suggest(argv[1], names), "marrow");
+  if (argc < 2) {
+    complain(app.help());
+    return ExitCode::Usage;
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) { return explain(app, error); }
+  for (const auto& [sub, command] : commands)
+    if (sub->parsed()) return command();
+  return ExitCode::Internal;
+}
+
+}  // namespace marrow

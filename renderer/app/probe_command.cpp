@@ -1,0 +1,80 @@
+// marrow probe: a field at given points, in numbers that can be read back without loss.
+#include <cmath>
+#include <fstream>
+#include <iostream>
+
+#include <fmt/format.h>
+
+#include "renderer/app/commands.h"
+#include "renderer/app/files.h"
+#include "renderer/app/point_list.h"
+#include "renderer/app/print.h"
+#include "renderer/app/report.h"
+#include "renderer/app/scene_input.h"
+
+namespace marrow {
+namespace {
+
+// JSON knows no infinity; 1e999 is one to every reader that takes numbers as doubles.
+std::string json(double x) {
+  if (std::isnan(x)) return "null";
+  if (std::isinf(x)) return x > 0 ? "1e999" : "-1e999";
+  return fmt::format("{:.17g}", x);
+}
+std::string json(const Vec3d& v) { return fmt::format("[{}, {}, {}]", json(v.x), json(v.y), json(v.z)); }
+
+std::string sample_of_field(const FieldProgram& program, const Vec3d& p) {
+  const FieldSample s = evaluate(program, p);
+  return fmt::format(R"("point": {}, "value": {}, "gradient": {}, "iso": {}, "inside": {})", json(p), json(s.value),
+                     json(s.gradient), json(FieldProgram::iso()), s.value > FieldProgram::iso());
+}
+
+std::string sample_of_blend(const PlacedBlend& part, const Vec3d& p) {
+  const BlendSample s = evaluate_part(part, p);
+  return fmt::format(
+      R"(, "sum": {}, "sum_gradient": {}, "si_gradient": {}, "si_norm": {}, "alpha": {}, "corrected": {}, )"
+      R"("corrected_gradient": {})",
+      json(s.sum), json(s.sum_gradient), json(s.si_gradient), json(s.si_norm), json(s.alpha), json(s.corrected),
+      json(s.corrected_gradient));
+}
+
+void print_samples(const FieldProgram& program, const std::vector<Vec3d>& points) {
+  const bool blend = is_single_blend(program);
+  std::string_view separator = "[\n";
+  for (const Vec3d& p : points) {
+    say(fmt::format("{}{{{}{}}}", separator, sample_of_field(program, p),
+                    blend ? sample_of_blend(program.parts()[0], p) : std::string()));
+    separator = ",\n";
+  }
+  say(fmt::format("{}]\n", points.empty() ? "[" : "\n"));
+}
+
+Result<std::vector<Vec3d>> points_of(const std::filesystem::path& path, SourceCache& sources) {
+  if (path == "-") return read_points(std::cin, "<stdin>", sources);
+  std::ifstream file(path);
+  return read_points(file, path.string(), sources);
+}
+
+}  // namespace
+
+ExitCode run(const ProbeCommand& command) {
+  ReadRecord record;
+  const auto scene = load(command.scene, record);
+  if (!scene) return report(scene.why(), record.sources, exit_code_of_failed_load(command.scene));
+  report(record.warnings, record.sources, ExitCode::Ok);
+  const auto fields = select_fields(*scene, command.object);
+  if (!fields) return report(fields.why(), ExitCode::Usage);
+  if (fields->size() > 1)
+    return report({failure("the scene has several fields; choose one by --object")}, ExitCode::Usage);
+
+  if (command.points != "-") {
+    if (const auto status = check_readable(command.points); !status) return report(status.why(), ExitCode::NoInput);
+  }
+  SourceCache sources;
+  const auto points = points_of(command.points, sources);
+  if (!points) return report(points.why(), sources, ExitCode::BadInput);
+  print_samples(fields->front()->program, *points);
+  return ExitCode::Ok;
+}
+
+}  // namespace marrow

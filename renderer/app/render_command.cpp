@@ -1,0 +1,97 @@
+// marrow render: scene text -> description -> surfaces and light -> film -> files.
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include "renderer/app/commands.h"
+#include "renderer/app/files.h"
+#include "renderer/app/finish_render.h"
+#include "renderer/app/interrupt.h"
+#include "renderer/app/picture_outputs.h"
+#include "renderer/app/progress_line.h"
+#include "renderer/app/report.h"
+#include "renderer/app/scene_input.h"
+#include "renderer/geometry/build_surfaces.h"
+#include "renderer/output/image_file.h"
+#include "renderer/scene/read_scene.h"
+#include "renderer/transport/render.h"
+#include "renderer/transport/render_scene.h"
+
+namespace marrow {
+namespace {
+
+struct Stop {
+  Diagnostics why;
+  ExitCode code;
+};
+
+std::variant<Preparation, Stop> prepare(const RenderCommand& command, const FilmDescription& film) {
+  Preparation ready;
+  auto outputs = choose_outputs(command);
+  if (!outputs) return Stop{outputs.why(), ExitCode::Usage};
+  ready.outputs = *outputs;
+  if (auto problems = unwritable(ready.outputs); !problems.empty()) return Stop{problems, ExitCode::CannotCreate};
+  if (command.ocio) {
+    if (auto status = check_readable(*command.ocio); !status) return Stop{status.why(), ExitCode::NoInput};
+  }
+  if (ready.outputs.png) {
+    auto display = Display::open(command.ocio, {}, command.view);
+    if (!display) return Stop{display.why(), ExitCode::Usage};
+    ready.display = std::move(*display);
+  }
+  if (command.crop) {
+    auto window = resolve(*command.crop, film.width, film.height);
+    if (!window) return Stop{window.why(), ExitCode::Usage};
+    ready.crop = *window;
+  }
+  return ready;
+}
+
+RenderSettings settings_over(const RenderCommand& command, RenderSettings settings) {
+  if (command.samples_per_pixel) settings.samples_per_pixel = *command.samples_per_pixel;
+  if (command.seed) settings.seed = *command.seed;
+  return settings;
+}
+
+// A problem with a place is the scene's; one without is the machine's: an instruction set that is not there.
+ExitCode exit_code_of_failed_build(const Diagnostics& why) {
+  const bool in_scene = std::any_of(why.begin(), why.end(), [](const auto& d) { return !d.where.file.empty(); });
+  return in_scene ? ExitCode::BadInput : ExitCode::Unavailable;
+}
+
+Result<EnvironmentImage> load_environment(const std::filesystem::path& path) {
+  auto image = read_rgb_image(path);
+  if (!image) return image.why();
+  return EnvironmentImage{image->width, image->height, std::move(image->samples)};
+}
+
+}  // namespace
+
+ExitCode run(const RenderCommand& command) {
+  ReadRecord record;
+  const auto scene = read_scene(command.scene.path, ReadOptions{.overrides = command.scene.overrides}, record);
+  if (!scene) return report(scene.why(), record.sources, exit_code_of_failed_load(command.scene));
+  report(record.warnings, record.sources, ExitCode::Ok);
+  const auto prepared = prepare(command, scene->film);
+  if (const auto* stop = std::get_if<Stop>(&prepared)) return report(stop->why, stop->code);
+  const auto& ready = std::get<Preparation>(prepared);
+
+  ProgressLine progress(command.progress);
+  progress.phase("building");
+  const auto surfaces = build_surfaces(*scene, {.isa = command.isa, .threads = command.threads});
+  progress.clear();
+  if (!surfaces) return report(surfaces.why(), record.sources, exit_code_of_failed_build(surfaces.why()));
+  const auto compiled = compile_transport(*scene, **surfaces, load_environment);
+  if (!compiled) return report(compiled.why(), record.sources, ExitCode::BadInput);
+
+  const RenderSettings settings = settings_over(command, scene->render);
+  const Film film = render(*compiled, settings,
+                           {.crop = ready.crop,
+                            .threads = command.threads,
+                            .time_limit_s = command.time_limit_s,
+                            .progress = [&](const Progress& p) { progress.show(p); },
+                            .interrupted = &interruption_flag()});
+  return finish(film, *scene, settings, ready, command.strict, progress);
+}
+
+}  // namespace marrow

@@ -1,0 +1,114 @@
+#include "renderer/geometry/build_surfaces.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "field/base/overloaded.h"
+#include "field/program/field_program.h"
+#include "renderer/geometry/embree_surfaces.h"
+#include "renderer/geometry/field_solid.h"
+#include "renderer/geometry/mesh_solid.h"
+
+namespace marrow {
+namespace {
+
+// Objects one by one into solids and planes; errors of all of them are gathered.
+class Builder {
+ public:
+  Builder(const SceneDescription& scene, const SurfaceOptions& options) : scene_(scene), options_(options) {}
+
+  std::vector<PlacedSolid> solids;
+  std::vector<PlacedPlane> planes;
+  Diagnostics problems;
+
+  void add_all() {
+    for (std::size_t i = 0; i < scene_.objects.size(); ++i) {
+      const ObjectDescription& object = scene_.objects[i];
+      std::visit(Overloaded{[&](const FieldDescription& f) { add(f, object, ObjectId{i}); },
+                            [&](const PlaneShape& p) {
+                              planes.push_back({p.point, normalize(p.normal), object.material, ObjectId{i}});
+                            },
+                            [&](const MeshShape& m) {
+                              solids.push_back({std::make_unique<MeshSolid>(m, object.material), ObjectId{i}});
+                            }},
+                 object.shape);
+    }
+  }
+
+ private:
+  void add(const FieldDescription& description, const ObjectDescription& object, ObjectId id) {
+    const auto program = compile(description);
+    if (!program) {
+      problems.insert(problems.end(), program.why().begin(), program.why().end());
+      return;
+    }
+    for (const PlacedBlend& part : program->parts()) {
+      auto solid = FieldSolid::make(part, object.material, {.instruction_set = options_.isa});
+      if (solid) {
+        solids.push_back({std::move(*solid), id});
+        continue;
+      }
+      for (Diagnostic d : solid.why()) {
+        if (d.where.line == 0) d.where = object.where;
+        problems.push_back(std::move(d));
+      }
+    }
+  }
+
+  const SceneDescription& scene_;
+  const SurfaceOptions& options_;
+};
+
+std::string embree_config(const SurfaceOptions& options, int threads) {
+  std::string config = "threads=" + std::to_string(threads);
+  if (options.isa == "sse4") config += ",isa=sse4.2";
+  else if (!options.isa.empty()) config += ",isa=" + options.isa;
+  return config;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Surfaces>> build_surfaces(const SceneDescription& scene, const SurfaceOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const int threads = options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+  std::optional<Result<std::unique_ptr<EmbreeSurfaces>>> built;
+  Diagnostics problems;
+  tbb::task_arena(threads).execute([&] {
+    Builder builder(scene, options);
+    builder.add_all();
+    problems = std::move(builder.problems);
+    if (problems.empty())
+      built = EmbreeSurfaces::make(std::move(builder.solids), std::move(builder.planes),
+                                   embree_config(options, threads));
+  });
+  if (!problems.empty()) return problems;
+  if (!*built) return built->why();
+  (**built)->build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return std::unique_ptr<Surfaces>(std::move(**built));
+}
+
+SurfaceReport report(const Surfaces& surfaces) {
+  SurfaceReport r;
+  const auto* embree = dynamic_cast<const EmbreeSurfaces*>(&surfaces);
+  if (embree == nullptr) return r;
+  r.build_seconds = embree->build_seconds;
+  for (const PlacedSolid& p : embree->solids()) {
+    r.primitives += p.solid->primitive_count();
+    r.bytes += p.solid->bytes();
+    const auto* field = dynamic_cast<const FieldSolid*>(p.solid.get());
+    if (field == nullptr) continue;
+    const TraceStatistics s = field->statistics();
+    r.cells += s.cells;
+    r.blocks += s.blocks;
+    r.largest_error = std::max(r.largest_error, s.largest_error);
+  }
+  return r;
+}
+
+}  // namespace marrow

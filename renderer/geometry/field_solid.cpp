@@ -1,0 +1,59 @@
+#include "renderer/geometry/field_solid.h"
+
+#include <utility>
+
+namespace marrow {
+
+Result<std::unique_ptr<FieldSolid>> FieldSolid::make(PlacedBlend part, MaterialId of_object,
+                                                     const TraceOptions& options) {
+  auto tracer = BlendTracer::make(std::move(part.blend), options);
+  if (!tracer) return tracer.why();
+  return std::unique_ptr<FieldSolid>(
+      new FieldSolid(std::move(*tracer), part.world_from_local, part.local_from_world, of_object));
+}
+
+FieldSolid::FieldSolid(std::unique_ptr<BlendTracer> tracer, const Affine& world_from_local,
+                       const Affine& local_from_world, MaterialId of_object)
+    : tracer_(std::move(tracer)),
+      world_from_local_(world_from_local),
+      local_from_world_(local_from_world),
+      in_world_(world_from_local == Affine{}),
+      material_(of_object) {}
+
+Box3 FieldSolid::element_box(std::size_t element) const {
+  const Box3 local = tracer_->cell_box(element);
+  if (in_world_) return local;
+  Box3 box;
+  for (int corner = 0; corner < 8; ++corner)
+    box.include(world_from_local_.point({corner & 1 ? local.upper.x : local.lower.x,
+                                         corner & 2 ? local.upper.y : local.lower.y,
+                                         corner & 4 ? local.upper.z : local.lower.z}));
+  return box;
+}
+
+FieldSolid::LocalRay FieldSolid::to_local(const Ray& ray) const {
+  if (in_world_) return {ray, 1};
+  const Vec3d direction = local_from_world_.vector(ray.direction);
+  const double stretch = length(direction);
+  return {{local_from_world_.point(ray.origin), UnitVec3::unchecked(direction / stretch), ray.t_min * stretch,
+           ray.t_max * stretch},
+          stretch};
+}
+
+std::optional<ElementHit> FieldSolid::hit(std::size_t element, const Ray& ray, bool any) const {
+  const auto [local, stretch] = to_local(ray);
+  const auto found = tracer_->first_hit(element, local, any);
+  if (!found) return {};
+  return ElementHit{found->t / stretch, found->evaluations, found->certified};
+}
+
+void FieldSolid::describe(std::size_t element, const Ray&, SurfaceHit& hit) const {
+  const Vec3d p = in_world_ ? hit.position : local_from_world_.point(hit.position);
+  const SurfacePoint surface = tracer_->surface_at(element, p);
+  hit.normal = in_world_ ? surface.normal : normalize(local_from_world_.transposed(surface.normal));
+  hit.outside = in_world_ ? surface.outside : world_from_local_.point(surface.outside);
+  const MaterialId own = strongest_material(tracer_->field(), p);
+  hit.material = own.valid() ? own : material_;
+}
+
+}  // namespace marrow

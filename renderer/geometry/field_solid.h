@@ -1,0 +1,41 @@
+// One placed blend as a solid: its elements are the cells of its tracer.
+#pragma once
+
+#include <memory>
+
+#include "field/math/affine.h"
+#include "field/program/field_program.h"
+#include "field/trace/blend_tracer.h"
+#include "renderer/geometry/solid.h"
+
+namespace marrow {
+
+class FieldSolid final : public Solid {
+ public:
+  static Result<std::unique_ptr<FieldSolid>> make(PlacedBlend, MaterialId of_object, const TraceOptions&);
+
+  std::size_t element_count() const override { return tracer_->cell_count(); }
+  Box3 element_box(std::size_t) const override;
+  std::optional<ElementHit> hit(std::size_t, const Ray&, bool any) const override;
+  void describe(std::size_t, const Ray&, SurfaceHit&) const override;
+  std::size_t primitive_count() const override { return tracer_->field().size(); }
+  std::size_t bytes() const override { return tracer_->statistics().bytes; }
+  TraceStatistics statistics() const { return tracer_->statistics(); }
+
+ private:
+  FieldSolid(std::unique_ptr<BlendTracer>, const Affine& world_from_local, const Affine& local_from_world,
+             MaterialId of_object);
+  /// The ray in the blend's coordinates; t there is `stretch` times t here.
+  struct LocalRay {
+    Ray ray;
+    double stretch;
+  };
+  LocalRay to_local(const Ray&) const;
+
+  std::unique_ptr<BlendTracer> tracer_;
+  Affine world_from_local_, local_from_world_;
+  bool in_world_;
+  MaterialId material_;
+};
+
+}  // namespace marrow

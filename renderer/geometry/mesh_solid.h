@@ -1,0 +1,30 @@
+// Triangles as a solid. Intersected in double precision, so that pictures do not depend on the instruction set.
+#pragma once
+
+#include "renderer/geometry/solid.h"
+#include "renderer/scene/scene_description.h"
+
+namespace marrow {
+
+class MeshSolid final : public Solid {
+ public:
+  MeshSolid(const MeshShape&, MaterialId);
+
+  std::size_t element_count() const override { return mesh_.triangles.size(); }
+  Box3 element_box(std::size_t) const override;
+  std::optional<ElementHit> hit(std::size_t, const Ray&, bool any) const override;
+  /// The normal is that of the triangle, on the side the ray comes from.
+  void describe(std::size_t, const Ray&, SurfaceHit&) const override;
+  std::size_t primitive_count() const override { return element_count(); }
+  std::size_t bytes() const override;
+
+ private:
+  std::array<Vec3d, 3> corners(std::size_t) const;
+  MeshShape mesh_;
+  MaterialId material_;
+};
+
+/// A point moved off a flat surface to the normal's side, by more than rounding can have misplaced it.
+Vec3d lifted(const Vec3d& position, const UnitVec3& normal);
+
+}  // namespace marrow

@@ -1,0 +1,35 @@
+// A part of a scene whose space is divided into boxed elements: what one Embree geometry holds.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "field/base/id.h"
+#include "field/math/box3.h"
+#include "field/math/ray.h"
+#include "renderer/geometry/surfaces.h"
+
+namespace marrow {
+
+struct ElementHit {
+  double t = 0;  ///< along the world ray
+  std::uint32_t evaluations = 0;
+  bool certified = true;
+};
+
+/// Immutable; safe to use from many threads. All rays and points are in world coordinates.
+class Solid {
+ public:
+  virtual ~Solid() = default;
+  virtual std::size_t element_count() const = 0;
+  virtual Box3 element_box(std::size_t element) const = 0;
+  /// The first hit in an element with t in [ray.t_min, ray.t_max], not depending on t_max; any hit with `any`.
+  virtual std::optional<ElementHit> hit(std::size_t element, const Ray&, bool any) const = 0;
+  /// Fills normal, outside and material of a hit whose position is known.
+  virtual void describe(std::size_t element, const Ray&, SurfaceHit&) const = 0;
+  virtual std::size_t primitive_count() const = 0;
+  virtual std::size_t bytes() const = 0;
+};
+
+}  // namespace marrow

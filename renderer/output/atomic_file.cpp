@@ -1,0 +1,138 @@
+#include "renderer/output/atomic_file.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace marrow {
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::span<const std::byte>;
+
+Diagnostic system_failure(const std::string& action, const fs::path& path) {
+  return failure(action + ": " + std::generic_category().message(errno), path.string());
+}
+
+// close() may be the first to tell of a lost write, so the owner closes by hand and the destructor is for errors.
+class File {
+ public:
+  explicit File(int fd) : fd_(fd) {}
+  File(File&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  File& operator=(File&&) = delete;
+  ~File() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  int fd() const { return fd_; }
+  bool is_open() const { return fd_ >= 0; }
+  bool close() { return ::close(std::exchange(fd_, -1)) == 0; }
+
+ private:
+  int fd_;
+};
+
+bool write_all(int fd, Bytes bytes) {
+  constexpr std::size_t largest_write = std::size_t{1} << 30;  // Linux takes at most 2^31 - 4096 at once
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(fd, bytes.data(), std::min(bytes.size(), largest_write));
+    if (n < 0 && errno == EINTR) continue;
+    if (n == 0) errno = ENOSPC;
+    if (n <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(n));
+  }
+  return true;
+}
+
+// True when the file holds these bytes and no more; errno is EIO when it holds others.
+bool holds(int fd, Bytes bytes) {
+  std::array<std::byte, std::size_t{1} << 16> buffer;
+  struct stat info {};
+  if (::fstat(fd, &info) != 0) return false;
+  bool same = static_cast<std::size_t>(info.st_size) == bytes.size();
+  for (std::size_t at = 0; same && at < bytes.size();) {
+    const ssize_t n = ::pread(fd, buffer.data(), buffer.size(), static_cast<off_t>(at));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return false;
+    const std::size_t count = static_cast<std::size_t>(n);
+    same = count > 0 && at + count <= bytes.size() && std::memcmp(buffer.data(), bytes.data() + at, count) == 0;
+    at += count;
+  }
+  if (!same) errno = EIO;
+  return same;
+}
+
+// A name in the same folder, so that rename() stays within one file system. It does not grow with the target's name,
+// which may already be as long as the file system allows.
+File create_temporary(const fs::path& folder, fs::path& name) {
+  static std::atomic<unsigned> counter{0};
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    name = folder / (".marrow-" + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp");
+    File file(::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (file.is_open() || errno != EEXIST) return file;
+  }
+  return File(-1);
+}
+
+Status write_in_place(const fs::path& path, Bytes bytes) {
+  File file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  if (!file.is_open()) return system_failure("cannot open", path);
+  if (!write_all(file.fd(), bytes)) return system_failure("cannot write", path);
+  if (!file.close()) return system_failure("cannot close", path);
+  return Done{};
+}
+
+// Everything up to the rename; the caller removes the temporary if this fails.
+Status fill_and_rename(File file, const fs::path& temporary, const fs::path& target, Bytes bytes) {
+  struct stat old {};
+  if (::stat(target.c_str(), &old) == 0 && ::fchmod(file.fd(), old.st_mode & 07777) != 0)
+    return system_failure("cannot keep the permissions of the old file", target);
+  if (!write_all(file.fd(), bytes)) return system_failure("cannot write", target);
+  if (::fsync(file.fd()) != 0) return system_failure("cannot sync", target);
+  if (!holds(file.fd(), bytes)) return system_failure("the file does not read back as it was written", target);
+  if (!file.close()) return system_failure("cannot close", target);
+  if (::rename(temporary.c_str(), target.c_str()) != 0) return system_failure("cannot rename into place", target);
+  return Done{};
+}
+
+Status sync_folder(const fs::path& folder) {
+  File file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!file.is_open()) return system_failure("cannot open the folder", folder);
+  // Some network file systems cannot sync a folder and say EINVAL: there the rename is all one can have.
+  if (::fsync(file.fd()) != 0 && errno != EINVAL) return system_failure("cannot sync the folder", folder);
+  return Done{};
+}
+
+}  // namespace
+
+Status write_file_atomically(const fs::path& path, Bytes bytes) {
+  if (!path.has_filename()) return failure("not the name of a file", path.string());
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_directory(status)) return failure("cannot write: is a folder", path.string());
+  if (fs::exists(status) && !fs::is_regular_file(status)) return write_in_place(path, bytes);
+
+  // A link is followed, so that the link stays and its target is replaced
+  const fs::path target = fs::is_symlink(fs::symlink_status(path, error)) ? fs::weakly_canonical(path, error) : path;
+  if (error && error != std::errc::no_such_file_or_directory)
+    return failure("cannot resolve: " + error.message(), path.string());
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+
+  fs::path temporary;
+  File file = create_temporary(folder, temporary);
+  if (!file.is_open()) return system_failure("cannot create a file in the folder", folder);
+  if (Status written = fill_and_rename(std::move(file), temporary, target, bytes); !written) {
+    ::unlink(temporary.c_str());
+    return written;
+  }
+  return sync_folder(folder);
+}
+
+}  // namespace marrow

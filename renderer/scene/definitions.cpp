@@ -1,0 +1,109 @@
+// Subtrees in the order of their needs, found without recursion over the chain of uses.
+#include "renderer/scene/definitions.h"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include "field/base/overloaded.h"
+#include "renderer/scene/field_forms.h"
+#include "renderer/scene/reader.h"
+
+namespace marrow {
+namespace {
+
+// Every `use: name` of a subtree. Recursion ends at the document's own depth limit.
+void collect_uses(const Value& value, std::vector<std::string>& uses) {
+  for (const Value& item : value.items) collect_uses(item, uses);
+  for (const Member& member : value.members) {
+    if (member.key == "use" && member.value.is_scalar()) uses.push_back(member.value.text);
+    else collect_uses(member.value, uses);
+  }
+}
+
+FieldNode moved_by(FieldNode node, std::size_t offset) {
+  const auto move_list = [&](std::vector<FieldNodeId>& of) {
+    for (FieldNodeId& id : of) id = FieldNodeId{id.index() + offset};
+  };
+  std::visit(
+      Overloaded{[](Primitive&) {}, [&](Blend& blend) { move_list(blend.of); }, [&](Union& all) { move_list(all.of); },
+                 [&](Transform& transform) { transform.of = FieldNodeId{transform.of.index() + offset}; }},
+      node.what);
+  return node;
+}
+
+}  // namespace
+
+std::vector<std::string> Definitions::names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, fragment] : fragments_) names.push_back(name);
+  return names;
+}
+
+void Definitions::read(const Value& defs, Reader& reader) {
+  std::map<std::string, const Member*> by_name;
+  for (const Member& member : defs.members) {
+    by_name[member.key] = &member;
+    states_[member.key] = State::Waiting;
+    fragments_[member.key] = std::nullopt;
+  }
+  reader.nodes_left = max_nodes;
+  for (const Member& member : defs.members)
+    if (states_[member.key] == State::Waiting) read_after_its_parts(member, by_name, reader);
+  reader.nodes_left = Reader::max_nodes;
+}
+
+// Depth first with a stack of our own: a subtree is read when all that it uses has been.
+void Definitions::read_after_its_parts(const Member& first, const std::map<std::string, const Member*>& by_name,
+                                       Reader& reader) {
+  struct Step {
+    const Member* member;
+    std::vector<std::string> uses;
+  };
+  const auto step_into = [](const Member& member) {
+    Step step{&member, {}};
+    collect_uses(member.value, step.uses);
+    return step;
+  };
+
+  states_[first.key] = State::Open;
+  std::vector<Step> path{step_into(first)};
+  while (!path.empty()) {
+    Step& step = path.back();
+    if (step.uses.empty()) {
+      FieldDescription fragment;
+      const Subject subject(reader, "`" + step.member->key + "`");
+      if (read_field(step.member->value, reader, fragment)) fragments_[step.member->key] = std::move(fragment);
+      states_[step.member->key] = State::Done;
+      path.pop_back();
+      continue;
+    }
+    const std::string next = std::move(step.uses.back());
+    step.uses.pop_back();
+    const auto found = by_name.find(next);
+    if (found == by_name.end() || states_[next] == State::Done) continue;  // the unknown are reported by place()
+    if (states_[next] == State::Waiting) {
+      states_[next] = State::Open;
+      path.push_back(step_into(*found->second));
+      continue;
+    }
+    std::string circle = next;
+    for (auto s = path.rbegin(); s != path.rend() && s->member->key != next; ++s)
+      circle = s->member->key + " -> " + circle;
+    reader.error(step.member->place, "`" + next + "` uses itself: " + next + " -> " + circle,
+                 "a subtree can only use what does not lead back to it", step.member->key.size());
+  }
+}
+
+std::optional<FieldNodeId> Definitions::place(const std::string& name, const Value& at, FieldDescription& field,
+                                              Reader& reader) const {
+  const auto found = fragments_.find(name);
+  if (found == fragments_.end()) return reader.unknown("subtree", name, at.place, names());
+  if (!found->second || !reader.spend_nodes(found->second->nodes.size(), at.place)) return std::nullopt;
+  const FieldDescription& part = *found->second;
+  const std::size_t offset = field.nodes.size();
+  for (const FieldNode& node : part.nodes) field.nodes.push_back(moved_by(node, offset));
+  return FieldNodeId{part.root.index() + offset};
+}
+
+}  // namespace marrow

@@ -1,0 +1,191 @@
+// One table for each node. A new node is a table here and an entry in field_nodes().
+#include "renderer/scene/field_forms.h"
+
+#include <array>
+#include <cmath>
+
+#include "field/kernel/inverse_family.h"
+#include "renderer/scene/primitive_forms.h"
+
+namespace marrow {
+namespace {
+
+constexpr double degree_in_radians = 3.14159265358979323846 / 180;
+
+const Alternatives<InverseKernel>& kernels() {
+  static const Alternatives<InverseKernel> kernels(
+      "kernel", "The kernel of a blend; its degree says how far skeletons feel each other.",
+      {{"inverse",
+        mapped<InverseKernel>(integer(min_kernel_degree, max_kernel_degree), [](int n) { return InverseKernel{n}; })}},
+      {"cauchy", "compact"});
+  return kernels;
+}
+
+Form<Alpha> alpha() {
+  static const Alternatives<Alpha> maps("alpha", "", {}, {"direction", "attribute"});
+  const auto from_word = [](bool is_sum) { return is_sum ? Alpha(AlphaSum{}) : Alpha(AlphaContact{}); };
+  const auto from_angle = [](double radians) { return Alpha(radians); };
+  return either<Alpha>({mapped<Alpha>(choice<bool>({{"contact", false}, {"sum", true}}, {"per_skeleton"}), from_word),
+                        mapped<Alpha>(primitive_alpha(), from_angle), one_of(maps)});
+}
+
+const Table<Blend>& blend_table() {
+  static const Table<Blend> table(
+      "blend", "Many skeletons as one smooth body with topology control (Zanni, Cani, Gleicher 2015).",
+      {key<Blend>("kernel", &Blend::kernel, one_of(kernels()), "the kernel; degree 4 when left out"),
+       key<Blend>("alpha", &Blend::alpha, alpha(),
+                  "projection angle: `contact` (when left out) blends where skeletons touch, `sum` is the plain sum"),
+       key<Blend>("cavity", &Blend::cavity, boolean(), "whether hollows that close are corrected too"),
+       key<Blend>("projection", &Blend::projection,
+                  choice<Projection>({{"paper", Projection::Paper}, {"exact", Projection::Exact}}),
+                  "how the corrected value is found: in one step as published, or exactly"),
+       key<Blend>("model", &Blend::model, skeleton_model(), "field of the skeletons that do not say it themselves"),
+       key<Blend>("of", &Blend::of, list_of(field_node(), 1), "the skeletons").required()});
+  return table;
+}
+
+const Table<Union>& union_table() {
+  static const Table<Union> table("union", "All that is inside any of its children, with creases where they meet.",
+                                  {key<Union>("of", &Union::of, list_of(field_node(), 1), "the fields").required()});
+  return table;
+}
+
+struct Rotation {
+  Vec3d axis{0, 1, 0};
+  double angle_deg = 0;
+};
+const Table<Rotation>& rotation_table() {
+  static const Table<Rotation> table(
+      "rotation", "A right-handed rotation about an axis through the origin.",
+      {key<Rotation>("axis", &Rotation::axis, direction(), "the axis").required(),
+       key<Rotation>("angle", &Rotation::angle_deg, degrees(any_number()), "in degrees").required()});
+  return table;
+}
+
+struct Placement {
+  Vec3d translate{0, 0, 0}, scale{1, 1, 1};
+  Rotation rotate;
+  FieldNodeId of;
+};
+Form<Vec3d> scaling() {
+  const Form<Vec3d> each = checked(
+      position(), [](const Vec3d& s) { return s.x != 0 && s.y != 0 && s.z != 0; }, "three factors, none of them 0");
+  const Form<Vec3d> one = mapped<Vec3d>(number(any_radius()), [](double s) { return Vec3d{s, s, s}; });
+  return either<Vec3d>({each, one}, "a factor above 0 or three of them, none 0");
+}
+const Table<Placement>& transform_table() {
+  static const Table<Placement> table(
+      "transform", "Places a subtree: scaled first, then rotated, then moved.",
+      {key<Placement>("translate", &Placement::translate, position(), "by this vector"),
+       key<Placement>("rotate", &Placement::rotate, map_of(rotation_table()), "about the origin"),
+       key<Placement>("scale", &Placement::scale, scaling(), "from the origin; a negative factor mirrors"),
+       key<Placement>("of", &Placement::of, field_node(), "what is placed").required()});
+  return table;
+}
+Transform transform_of(const Placement& p) {
+  return {.parent_from_child = Affine::translate(p.translate) *
+                               Affine::rotate(normalize(p.rotate.axis), p.rotate.angle_deg * degree_in_radians) *
+                               Affine::scale(p.scale),
+          .of = p.of};
+}
+
+// A node that is read by `form` and then added behind its children.
+template <class What, class Convert>
+Form<FieldNodeId> added(const Form<What>& form, Convert convert) {
+  Form<FieldNodeId> node = mapped<FieldNodeId>(form, [](const What&) { return FieldNodeId{}; });
+  node.read = [form, convert](const Value& v, Reader& reader) -> std::optional<FieldNodeId> {
+    auto what = form.read(v, reader);
+    if (!what || !reader.spend_nodes(1, v.place)) return std::nullopt;
+    return reader.field->add({.what = convert(*std::move(what)), .where = reader.sources.location(v.place)});
+  };
+  return node;
+}
+const auto as_it_is = [](auto what) { return what; };
+
+Form<FieldNodeId> use() {
+  const Form<std::string> name = name_of("the name of a subtree of `defs`");
+  Form<FieldNodeId> node = mapped<FieldNodeId>(name, [](const std::string&) { return FieldNodeId{}; });
+  node.read = [name](const Value& v, Reader& reader) -> std::optional<FieldNodeId> {
+    const auto wanted = name.read(v, reader);
+    return wanted ? reader.definitions.place(*wanted, v, *reader.field, reader) : std::nullopt;
+  };
+  return node;
+}
+
+const Alternatives<FieldNodeId>& field_nodes() {
+  static const Alternatives<FieldNodeId> nodes("node", "One node of a field.",
+                                               {{"point", added(point_form(), as_it_is)},
+                                                {"segment", added(segment_form(), as_it_is)},
+                                                {"polyline", added(polyline_form(), as_it_is)},
+                                                {"skeleton", added(skeleton_form(), as_it_is)},
+                                                {"blend", added(map_of(blend_table()), as_it_is)},
+                                                {"union", added(map_of(union_table()), as_it_is)},
+                                                {"transform", added(map_of(transform_table()), transform_of)},
+                                                {"use", use()}},
+                                               {"triangle",
+                                                "circle",
+                                                "arc",
+                                                "curve",
+                                                "sphere",
+                                                "cylinder",
+                                                "cone",
+                                                "box",
+                                                "torus",
+                                                "plane",
+                                                "ellipsoid",
+                                                "sum",
+                                                "ricci",
+                                                "soft_union",
+                                                "intersection",
+                                                "difference",
+                                                "contact",
+                                                "twist",
+                                                "taper",
+                                                "bend",
+                                                "shear",
+                                                "soft_intersection",
+                                                "soft_difference",
+                                                "weighted_blend",
+                                                "local_convolution"});
+  return nodes;
+}
+
+}  // namespace
+
+// field_nodes() is asked for only when a value is read: its tables hold this form themselves.
+Form<FieldNodeId> field_node() {
+  return {.words = "a node",
+          .json = reference_to("node"),
+          .read = [](const Value& v, Reader& reader) { return field_nodes().read(v, reader); },
+          .recognises = [](const Value& v) { return v.kind == Value::Kind::Map; }};
+}
+
+bool read_field(const Value& v, Reader& reader, FieldDescription& field) {
+  reader.field = &field;
+  const auto root = field_node().read(v, reader);
+  reader.field = nullptr;
+  if (root) field.root = *root;
+  return root.has_value();
+}
+
+Form<FieldDescription> field_tree() {
+  Form<FieldDescription> form = mapped<FieldDescription>(field_node(), [](FieldNodeId) { return FieldDescription{}; });
+  form.read = [](const Value& v, Reader& reader) -> std::optional<FieldDescription> {
+    FieldDescription field;
+    if (!read_field(v, reader, field)) return std::nullopt;
+    return field;
+  };
+  return form;
+}
+
+std::vector<const TableInfo*> field_tables() {
+  std::vector<const TableInfo*> tables = primitive_tables();
+  for (const TableInfo* table :
+       {&blend_table().info, &union_table().info, &transform_table().info, &rotation_table().info})
+    tables.push_back(table);
+  return tables;
+}
+
+std::vector<const AlternativesInfo*> field_alternatives() { return {&field_nodes().info, &kernels().info}; }
+
+}  // namespace marrow

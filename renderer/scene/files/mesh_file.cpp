@@ -1,0 +1,61 @@
+// The only door to Assimp.
+#include "renderer/scene/files/mesh_file.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+namespace marrow {
+namespace {
+
+std::string ending_of(const std::string& name) {
+  std::string ending = std::filesystem::path(name).extension().string();
+  for (char& c : ending)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return ending;
+}
+
+// Everything but positions and triangles goes, so that equal corners become one.
+void keep_only_triangles(Assimp::Importer& importer) {
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
+                                                          aiComponent_COLORS | aiComponent_TEXCOORDS |
+                                                          aiComponent_TEXTURES | aiComponent_MATERIALS);
+}
+
+void append(MeshShape& shape, const aiMesh& mesh) {
+  const auto base = static_cast<std::uint32_t>(shape.positions.size());
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i)
+    shape.positions.push_back({mesh.mVertices[i].x, mesh.mVertices[i].y, mesh.mVertices[i].z});
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    const aiFace& face = mesh.mFaces[i];
+    if (face.mNumIndices == 3)
+      shape.triangles.push_back({base + face.mIndices[0], base + face.mIndices[1], base + face.mIndices[2]});
+  }
+}
+
+}  // namespace
+
+Result<MeshShape> read_mesh(std::string_view bytes, const std::string& name) {
+  const std::string ending = ending_of(name);
+  if (ending != ".obj" && ending != ".ply") return failure("`" + name + "` is neither .obj nor .ply", name);
+  Assimp::Importer importer;
+  keep_only_triangles(importer);
+  const aiScene* scene = importer.ReadFileFromMemory(
+      bytes.data(), bytes.size(),
+      aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType,
+      ending.c_str() + 1);
+  if (!scene) return failure(std::string("not a mesh: ") + importer.GetErrorString(), name);
+  MeshShape shape;
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i) append(shape, *scene->mMeshes[i]);
+  if (shape.triangles.empty()) return failure("the mesh has no triangle", name);
+  const bool finite =
+      std::all_of(shape.positions.begin(), shape.positions.end(), [](const Vec3d& p) { return is_finite(p); });
+  if (!finite) return failure("the mesh has a position that is not finite", name);
+  return shape;
+}
+
+}  // namespace marrow

@@ -1,0 +1,24 @@
+// The skeletons that a blend sums, and what each of them may say.
+#pragma once
+
+#include <vector>
+
+#include "field/description/field_node.h"
+#include "renderer/scene/form.h"
+#include "renderer/scene/table.h"
+
+namespace marrow {
+
+Form<SkeletonModel> skeleton_model();
+/// The projection angle as a number of radians in [-1, pi/2].
+Form<double> primitive_alpha();
+
+Form<Primitive> point_form();
+Form<Primitive> segment_form();
+Form<Primitive> polyline_form();
+/// Reads the file that it names.
+Form<Primitive> skeleton_form();
+
+std::vector<const TableInfo*> primitive_tables();
+
+}  // namespace marrow

@@ -1,0 +1,115 @@
+// The steps from a file to a description: parse, include, override, define, read, join.
+#include "renderer/scene/read_scene.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "renderer/scene/include.h"
+#include "renderer/scene/override.h"
+#include "renderer/scene/reader.h"
+#include "renderer/scene/scene_forms.h"
+
+namespace marrow {
+namespace {
+
+// Subtrees name materials and objects name subtrees, so names of materials and all subtrees come first. A material
+// with mistakes keeps its name, so that what names it is not a second mistake.
+std::optional<SceneDraft> read_values(const Value& scene, Reader& reader) {
+  if (const Member* materials = scene.find("materials"))
+    for (const Member& member : materials->value.members) reader.materials.push_back(member.key);
+  if (const Member* defs = scene.find("defs")) {
+    const Subject subject(reader, "`defs`");
+    if (defs->value.kind == Value::Kind::Map) reader.definitions.read(defs->value, reader);
+    else reader.wrong(defs->value, "a map from names to nodes");
+  }
+  return scene_table().read(scene, reader);
+}
+
+void name_objects(std::vector<ObjectDescription>& objects, Reader& reader) {
+  std::map<std::string, SourceLocation> first;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    ObjectDescription& object = objects[i];
+    if (object.name.empty()) object.name = "object " + std::to_string(i + 1);
+    const auto [known, is_new] = first.emplace(object.name, object.where);
+    if (is_new) continue;
+    reader.problems.push_back({.where = object.where,
+                               .message = "two objects are called `" + object.name + "`",
+                               .hint = "the first stands in line " + std::to_string(known->second.line)});
+  }
+}
+
+// Objects that name no material share a matt grey one.
+void complete_materials(SceneDraft& draft) {
+  MaterialId grey;
+  for (ObjectDescription& object : draft.objects) {
+    if (object.material.valid()) continue;
+    if (!grey.valid()) {
+      grey = MaterialId{draft.materials.size()};
+      draft.materials.push_back({.name = "default", .what = DiffuseDescription{}, .where = {}});
+    }
+    object.material = grey;
+  }
+}
+
+SceneDescription finished(SceneDraft draft, std::string hash) {
+  return {.units = std::move(draft.units),
+          .z_up = draft.z_up,
+          .camera = draft.camera,
+          .film = draft.film,
+          .render = draft.render,
+          .lights = std::move(draft.lights),
+          .materials = std::move(draft.materials),
+          .objects = std::move(draft.objects),
+          .hash = std::move(hash)};
+}
+
+void sort_by_place(Diagnostics& problems) {
+  std::map<std::string, std::size_t> file_order;  // files in the order in which they are first spoken of
+  for (const Diagnostic& d : problems) file_order.emplace(d.where.file, file_order.size());
+  std::stable_sort(problems.begin(), problems.end(), [&](const Diagnostic& a, const Diagnostic& b) {
+    return std::tuple(file_order[a.where.file], a.where.line, a.where.column) <
+           std::tuple(file_order[b.where.file], b.where.line, b.where.column);
+  });
+}
+
+std::optional<SceneDescription> read_all(const std::filesystem::path& path, const ReadOptions& options,
+                                         Reader& reader) {
+  TextBudget budget;
+  std::filesystem::path canonical;
+  auto scene = read_text(path, {.file = UINT32_MAX}, reader, budget, canonical);
+  if (!scene) return std::nullopt;
+  if (scene->kind == Value::Kind::Absent) {
+    reader.error(scene->place, "the file holds no scene", "a scene starts with `marrow: 1`");
+    return std::nullopt;
+  }
+  if (!options.allow_outside) reader.files.confine_to(path.parent_path());
+  merge_includes(*scene, canonical, reader, budget);
+  apply_overrides(*scene, options.overrides, reader, budget.values);
+  auto draft = read_values(*scene, reader);
+  if (!draft) return std::nullopt;
+  name_objects(draft->objects, reader);
+  complete_materials(*draft);
+  return finished(*std::move(draft), reader.files.hash());
+}
+
+}  // namespace
+
+Result<SceneDescription> read_scene(const std::filesystem::path& path, const ReadOptions& options, ReadRecord& record) {
+  InputFiles files;
+  Reader reader(record.sources, files, path.parent_path());
+  auto scene = read_all(path, options, reader);
+  record.warnings = std::move(reader.warnings);
+  record.files = files.names();
+  sort_by_place(reader.problems);
+  if (scene && reader.problems.empty()) return *std::move(scene);
+  return std::move(reader.problems);
+}
+
+Result<SceneDescription> read_scene(const std::filesystem::path& path, const ReadOptions& options) {
+  ReadRecord record;
+  return read_scene(path, options, record);
+}
+
+}  // namespace marrow

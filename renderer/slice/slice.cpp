@@ -1,0 +1,144 @@
+#include "renderer/slice/slice.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace marrow {
+namespace {
+
+constexpr double most_pixels = double{1 << 26};
+constexpr std::array<char, 3> axis_names = {'x', 'y', 'z'};
+
+std::size_t index(int axis) { return static_cast<std::size_t>(axis); }
+
+// A quarter of the object's size on each side; a flat object gets a quarter of its longest side instead.
+Result<SliceWindow> default_window(const Box3& bounds, int axis) {
+  if (bounds.empty() || !is_finite(bounds.size())) {
+    Diagnostic d = failure("the object has no bounds to fit the picture to");
+    d.hint = "give a window";
+    return d;
+  }
+  const auto [u, v] = slice_axes(axis);
+  const double longest = max_component(bounds.size());
+  const auto margin = [&](int a) {
+    const double size = bounds.size()[index(a)];
+    return 0.25 * (size > 0 ? size : longest > 0 ? longest : 1);
+  };
+  const Vec3d &lower = bounds.lower, &upper = bounds.upper;
+  return SliceWindow{lower[index(u)] - margin(u), lower[index(v)] - margin(v), upper[index(u)] + margin(u),
+                     upper[index(v)] + margin(v)};
+}
+
+Result<SliceImage> blank(double iso, const Box3& bounds, const SliceRequest& request) {
+  if (request.axis < 0 || request.axis > 2) return failure("the axis of a slice is 0, 1 or 2");
+  if (!std::isfinite(request.offset)) return failure("the offset of the plane is not finite");
+  const Result<SliceWindow> window = request.window ? *request.window : default_window(bounds, request.axis);
+  if (!window) return window.why();
+  const double aspect = window->height() / window->width();
+  if (!(window->width() > 0) || !(aspect > 0) || !std::isfinite(aspect))
+    return failure("the window of the slice is empty or not finite");
+  const double height = std::max(1.0, std::floor(request.width * aspect + 0.5));
+  if (request.width < 1 || request.width * height > most_pixels)
+    return failure(fmt::format("{} x {:.0f} pixels: a slice has from 1 to 2^26", request.width, height));
+  SliceImage image{.axis = request.axis,
+                   .offset = request.offset,
+                   .iso = iso,
+                   .window = *window,
+                   .width = request.width,
+                   .height = static_cast<int>(height),
+                   .samples = {}};
+  image.samples.resize(index(image.width) * index(image.height));
+  return image;
+}
+
+Vec3d pixel_center(const SliceImage& image, int x, int y) {
+  const auto [u, v] = slice_axes(image.axis);
+  Vec3d p;
+  p[index(image.axis)] = image.offset;
+  p[index(u)] = image.window.u0 + (x + 0.5) / image.width * image.window.width();
+  p[index(v)] = image.window.v1 - (y + 0.5) / image.height * image.window.height();
+  return p;
+}
+
+void sample_rows(const FieldFunction& field, SliceImage& image) {
+  tbb::parallel_for(tbb::blocked_range<int>(0, image.height), [&](const tbb::blocked_range<int>& rows) {
+    for (int y = rows.begin(); y < rows.end(); ++y)
+      for (int x = 0; x < image.width; ++x)
+        image.samples[index(y) * index(image.width) + index(x)] = field(pixel_center(image, x, y));
+  });
+}
+
+Channel channel(const std::string& name, const SliceImage& image, const std::function<double(const SliceSample&)>& of) {
+  std::vector<float> values(image.samples.size());
+  std::transform(image.samples.begin(), image.samples.end(), values.begin(),
+                 [&](const SliceSample& s) { return static_cast<float>(of(s)); });
+  return {name, std::move(values)};
+}
+
+}  // namespace
+
+Result<std::pair<int, double>> parse_plane(const std::string& text) {
+  std::string packed;
+  std::copy_if(text.begin(), text.end(), std::back_inserter(packed), [](char c) { return c != ' '; });
+  const auto axis = packed.empty() ? axis_names.end() : std::find(axis_names.begin(), axis_names.end(), packed[0]);
+  double offset = 0;
+  const char* const last = packed.data() + packed.size();
+  const bool shaped = packed.size() > 2 && axis != axis_names.end() && packed[1] == '=';
+  if (shaped) {
+    const auto [end, error] = std::from_chars(packed.data() + 2, last, offset);
+    if (error == std::errc{} && end == last && std::isfinite(offset))
+      return std::pair(static_cast<int>(axis - axis_names.begin()), offset);
+  }
+  Diagnostic d = failure("\"" + text + "\" is not an axis plane");
+  d.hint = "for example z=0 or x=-1.5";
+  return d;
+}
+
+std::array<int, 2> slice_axes(int axis) {
+  constexpr std::array<std::array<int, 2>, 3> axes = {{{1, 2}, {0, 2}, {0, 1}}};
+  return axes[index(axis)];
+}
+
+Result<SliceImage> slice(const FieldFunction& field, double iso, const Box3& bounds, const SliceRequest& request) {
+  Result<SliceImage> image = blank(iso, bounds, request);
+  if (!image) return image;
+  if (request.threads > 0) tbb::task_arena(request.threads).execute([&] { sample_rows(field, *image); });
+  else sample_rows(field, *image);
+  return image;
+}
+
+std::pair<double, double> automatic_range(const SliceImage& image) {
+  double low = 0;
+  for (const SliceSample& s : image.samples)
+    if (s.value < low && std::isfinite(s.value)) low = s.value;
+  // As far below the surface as above it: beyond that negative fields are as unbounded as positive ones
+  low = std::max(low, image.iso - 2 * std::max(std::fabs(image.iso), 1e-300));
+  const double high = image.iso > 0 ? 2 * image.iso : image.iso - low;
+  return high > low ? std::pair(low, high) : std::pair(image.iso - 1, image.iso + 1);
+}
+
+Picture to_exr_picture(const SliceImage& image) {
+  const PixelWindow all{0, 0, image.width, image.height};
+  Picture picture{.display = all, .data = all, .channels = {}, .metadata = {}};
+  picture.channels.push_back(channel("field.grad.X", image, [](const SliceSample& s) { return s.gradient.x; }));
+  picture.channels.push_back(channel("field.grad.Y", image, [](const SliceSample& s) { return s.gradient.y; }));
+  picture.channels.push_back(channel("field.grad.Z", image, [](const SliceSample& s) { return s.gradient.z; }));
+  picture.channels.push_back(channel("field.value", image, [](const SliceSample& s) { return s.value; }));
+  picture.metadata = {{"marrow/slicePlane", fmt::format("{}={}", axis_names[index(image.axis)], image.offset)},
+                      {"marrow/sliceU0", image.window.u0},
+                      {"marrow/sliceV0", image.window.v0},
+                      {"marrow/sliceU1", image.window.u1},
+                      {"marrow/sliceV1", image.window.v1},
+                      {"marrow/iso", image.iso}};
+  return picture;
+}
+
+}  // namespace marrow

@@ -1,0 +1,104 @@
+// Sums of the samples of each pixel, and what the ray through its middle met.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "materials/rgb.h"
+#include "renderer/output/picture.h"
+
+namespace marrow {
+
+/// What the ray through the middle of a pixel met: free of noise.
+struct CentreHit {
+  float depth = std::numeric_limits<float>::infinity();  ///< along the camera's axis; +inf: nothing
+  std::array<float, 3> normal{};
+  std::array<float, 3> position{};
+  std::uint32_t object = 0;  ///< ObjectId + 1; 0: nothing
+  std::uint32_t evaluations = 0;
+  bool certified = true;
+};
+
+/// One camera sample.
+struct FilmSample {
+  Rgb radiance;
+  Rgb albedo;            ///< of the first surface; black where there is none
+  bool covered = false;  ///< a surface or a visible light was met
+};
+
+/// Sums in double, in the order of the samples. One thread adds all samples of a pixel.
+class PixelSums {
+ public:
+  /// A radiance that is not finite or is negative is not added but counted; returns whether it was added.
+  bool add(const FilmSample&);
+
+  std::uint32_t samples() const { return samples_; }
+  std::uint32_t invalid() const { return invalid_; }
+  Rgb mean() const;
+  Rgb albedo() const;
+  double coverage() const;
+  /// Estimated variance of the mean: the square of its standard error. 0 below two samples.
+  Rgb variance_of_mean() const;
+
+  CentreHit centre;
+
+ private:
+  Rgb sum_, sum_of_squares_;
+  std::array<float, 3> albedo_sum_{};
+  std::uint32_t covered_ = 0;
+  std::uint32_t samples_ = 0;
+  std::uint32_t invalid_ = 0;
+};
+
+enum class StopReason { Samples, Time, Interrupted };
+
+/// Samples that had to be dropped.
+struct InvalidSamples {
+  std::uint64_t count = 0;
+  int x = 0, y = 0;  ///< the first pixel in reading order that had one
+};
+
+class Film {
+ public:
+  Film(const PixelWindow& display, const PixelWindow& data)
+      : display_(display),
+        data_(data),
+        pixels_(static_cast<std::size_t>(data.width()) * static_cast<std::size_t>(data.height())) {}
+
+  const PixelWindow& display() const { return display_; }
+  const PixelWindow& data() const { return data_; }
+  /// Absolute coordinates inside data().
+  PixelSums& at(int x, int y) { return pixels_[index(x, y)]; }
+  const PixelSums& at(int x, int y) const { return pixels_[index(x, y)]; }
+  /// Row-major over data().
+  std::span<const PixelSums> pixels() const { return pixels_; }
+
+  InvalidSamples invalid_samples() const;
+  /// Pixels whose middle ray was not certified.
+  std::uint64_t uncertified_pixels() const;
+  /// Field evaluations of all middle rays.
+  std::uint64_t centre_evaluations() const;
+
+  StopReason stopped_by = StopReason::Samples;
+  double elapsed_s = 0;
+
+ private:
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y - data_.y0) * static_cast<std::size_t>(data_.width()) +
+           static_cast<std::size_t>(x - data_.x0);
+  }
+
+  PixelWindow display_, data_;
+  std::vector<PixelSums> pixels_;
+};
+
+/// Channels R G B A, Z, N.X N.Y N.Z, P.X P.Y P.Z, albedo.R/G/B, variance.R/G/B (of the mean) as float; object
+/// (id + 1, 0: none), samples and field.evals as unsigned. A is the share of samples that met a surface or a visible
+/// light; R G B also hold what is seen of the environment. No metadata.
+Picture to_picture(const Film&);
+
+}  // namespace marrow

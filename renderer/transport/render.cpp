@@ -1,0 +1,207 @@
+// The picture is made here: the only parallel loop of rendering.
+#include "renderer/transport/render.h"
+
+#include <algorithm>
+#include <cfenv>
+#include <chrono>
+#include <memory>
+#include <mutex>
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "renderer/transport/integrators/integrator.h"
+#include "renderer/transport/sampling/pixel_filter.h"
+#include "renderer/transport/tile_order.h"
+
+namespace marrow {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// The default floating-point environment, whatever the host program has set: flushing denormals to zero or another
+// rounding would change the picture.
+class DefaultFloatEnvironment {
+ public:
+  DefaultFloatEnvironment() {
+    std::fegetenv(&before_);
+    std::fesetenv(FE_DFL_ENV);
+  }
+  ~DefaultFloatEnvironment() { std::fesetenv(&before_); }
+  DefaultFloatEnvironment(const DefaultFloatEnvironment&) = delete;
+  DefaultFloatEnvironment& operator=(const DefaultFloatEnvironment&) = delete;
+
+ private:
+  std::fenv_t before_;
+};
+
+// Counts finished samples and tells the listener, not too often.
+class Meter {
+ public:
+  Meter(std::function<void(const Progress&)> listener, std::uint64_t total) : listener_(std::move(listener)) {
+    progress_.total = total;
+  }
+  void add(std::uint64_t samples) {
+    done_ += samples;
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!listener_ || !lock.owns_lock() || elapsed() - progress_.elapsed_s < 0.1) return;
+    tell();
+  }
+  void finish_pass(int samples_per_pixel) {
+    const std::lock_guard lock(mutex_);
+    progress_.samples_per_pixel = samples_per_pixel;
+  }
+  void finish() {
+    if (listener_) tell();
+  }
+  double elapsed() const { return seconds_since(start_); }
+
+ private:
+  void tell() {
+    progress_.done = done_;
+    progress_.elapsed_s = elapsed();
+    const double left = static_cast<double>(progress_.total - progress_.done);
+    progress_.left_s = progress_.done == 0 ? 0 : progress_.elapsed_s * left / static_cast<double>(progress_.done);
+    listener_(progress_);
+  }
+
+  std::function<void(const Progress&)> listener_;
+  Clock::time_point start_ = Clock::now();
+  std::atomic<std::uint64_t> done_ = 0;
+  std::mutex mutex_;
+  Progress progress_;
+};
+
+// What stays the same during one call of render().
+struct Job {
+  const RenderScene& scene;
+  const RenderSettings& settings;
+  const RenderOptions& options;
+  std::unique_ptr<const Integrator> integrator = make_integrator(settings);
+  PixelFilter filter{};
+  int samples = integrator->noise_free() ? 1 : std::max(settings.samples_per_pixel, 1);
+
+  bool interrupted() const { return options.interrupted && options.interrupted->load(std::memory_order_relaxed); }
+};
+
+struct Pass {
+  int first = 0, count = 0;
+};
+
+void store(CentreHit& centre, const SurfaceHit& hit, const Camera& camera) {
+  centre.depth = static_cast<float>(camera.depth(hit.position));
+  for (std::size_t i = 0; i < 3; ++i) {
+    centre.normal[i] = static_cast<float>(hit.normal.vec()[i]);
+    centre.position[i] = static_cast<float>(hit.position[i]);
+  }
+  centre.object = hit.object.value + 1;
+  centre.evaluations = hit.evaluations;
+  centre.certified = hit.certified;
+}
+
+FilmSample camera_sample(const Job& job, const Ray& ray, const std::optional<SurfaceHit>& hit, Sampler& sampler) {
+  FilmSample sample{.radiance = job.integrator->radiance(ray, hit, job.scene, sampler), .albedo = {}, .covered = true};
+  if (hit) sample.albedo = job.scene.materials[hit->material.index()].albedo_at(hit->position);
+  else sample.covered = job.scene.lights.finite_light_on(ray);
+  return sample;
+}
+
+// The samples of a pass of one pixel, in order. The channels free of noise come from a ray through the pixel's middle,
+// traced in the first pass; where a pixel has a single sample that ray is the sample.
+void render_pixel(const Job& job, int x, int y, Pass pass, PixelSums& pixel) {
+  const RenderScene& scene = job.scene;
+  Sampler sampler(x, y, job.settings.seed);
+  if (pass.first == 0) {
+    const Ray ray = scene.camera.ray(x + 0.5, y + 0.5);
+    const auto hit = scene.surfaces->first_hit(ray);
+    if (hit) store(pixel.centre, *hit, scene.camera);
+    if (job.samples == 1) {
+      sampler.start(0);
+      pixel.add(camera_sample(job, ray, hit, sampler));
+      return;
+    }
+  }
+  for (int i = pass.first; i < pass.first + pass.count; ++i) {
+    sampler.start(static_cast<std::uint32_t>(i));
+    const Sample2 offset = job.filter.offset(sampler.next_2d());
+    const Ray ray = scene.camera.ray(x + 0.5 + offset.x, y + 0.5 + offset.y);
+    pixel.add(camera_sample(job, ray, scene.surfaces->first_hit(ray), sampler));
+  }
+}
+
+void render_pass(const Job& job, const std::vector<PixelWindow>& tiles, Pass pass, Film& film, Meter& meter) {
+  // Worker threads take over the floating-point settings of this one
+  tbb::task_group_context context(tbb::task_group_context::isolated);
+  context.capture_fp_settings();
+  const auto render_tiles = [&](const tbb::blocked_range<std::size_t>& range) {
+    for (std::size_t t = range.begin(); t < range.end() && !job.interrupted(); ++t) {
+      const PixelWindow& tile = tiles[t];
+      for (int y = tile.y0; y < tile.y1; ++y)
+        for (int x = tile.x0; x < tile.x1; ++x) render_pixel(job, x, y, pass, film.at(x, y));
+      meter.add(static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height()) *
+                static_cast<std::uint64_t>(pass.count));
+    }
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles.size(), 1), render_tiles, tbb::simple_partitioner{},
+                    context);
+}
+
+// 1, 1, 2, 4, 8, 16, 16, ... samples: pictures of a power of two, and never long without a look at the clock. Under a
+// time limit no more than should fit at the speed so far; 0 when not even one does.
+int next_count(const Job& job, int done, double elapsed_s) {
+  int count = std::min(std::clamp(done, 1, 16), job.samples - done);
+  if (!job.options.time_limit_s || done == 0) return count;
+  const double left_s = *job.options.time_limit_s - elapsed_s;
+  while (count > 0 && elapsed_s / done * count > left_s) count /= 2;
+  return count;
+}
+
+void render_passes(const Job& job, Film& film, Meter& meter) {
+  const std::vector<PixelWindow> tiles = tiles_of(film.data());
+  for (int done = 0; done < job.samples;) {
+    const int count = next_count(job, done, meter.elapsed());
+    if (count == 0) {
+      film.stopped_by = StopReason::Time;
+      return;
+    }
+    render_pass(job, tiles, {done, count}, film, meter);
+    if (job.interrupted()) {
+      film.stopped_by = StopReason::Interrupted;
+      return;
+    }
+    done += count;
+    meter.finish_pass(done);
+  }
+}
+
+PixelWindow clipped(const PixelWindow& display, const std::optional<PixelWindow>& crop) {
+  if (!crop) return display;
+  PixelWindow data{std::max(display.x0, crop->x0), std::max(display.y0, crop->y0), std::min(display.x1, crop->x1),
+                   std::min(display.y1, crop->y1)};
+  if (data.x0 >= data.x1 || data.y0 >= data.y1) data = {0, 0, 0, 0};
+  return data;
+}
+
+}  // namespace
+
+Film render(const RenderScene& scene, const RenderSettings& settings, const RenderOptions& options) {
+  const DefaultFloatEnvironment defaults;
+  const Job job{scene, settings, options};
+  const PixelWindow display{0, 0, scene.width, scene.height};
+  Film film(display, clipped(display, options.crop));
+  Meter meter(options.progress, film.pixels().size() * static_cast<std::uint64_t>(job.samples));
+
+  const int threads = options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  tbb::task_arena(threads).execute([&] { render_passes(job, film, meter); });
+
+  film.elapsed_s = meter.elapsed();
+  meter.finish();
+  return film;
+}
+
+}  // namespace marrow

@@ -1,0 +1,41 @@
+// The picture is made here: the only parallel loop of rendering.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "renderer/output/picture.h"
+#include "renderer/scene/scene_description.h"
+#include "renderer/transport/film/film.h"
+#include "renderer/transport/render_scene.h"
+
+namespace marrow {
+
+/// How far a render is. A unit of work is one sample of one pixel.
+struct Progress {
+  std::uint64_t done = 0, total = 0;
+  double elapsed_s = 0;
+  double left_s = 0;          ///< estimate from the units done so far; 0 before the first
+  int samples_per_pixel = 0;  ///< every pixel has at least this many
+};
+
+struct RenderOptions {
+  /// The part of the film to render, clipped to it; nothing: all of it. Pixels of a crop equal those of the whole
+  /// film bit by bit.
+  std::optional<PixelWindow> crop{};
+  int threads = 0;  ///< 0: as many as the process may use (obeys affinity)
+  /// Checked between passes over the picture; the next pass is made small enough to fit. One sample is always taken.
+  std::optional<double> time_limit_s{};
+  /// Called by one thread at a time, at most ten times a second, and once at the end.
+  std::function<void(const Progress&)> progress{};
+  /// When it becomes true the tiles at work are finished and the film is returned; it may be set by a signal handler.
+  const std::atomic<bool>* interrupted = nullptr;
+};
+
+/// Renders `settings.samples_per_pixel` samples in passes over the whole picture. The film has the same bits for any
+/// number of threads. The integrators `normals` and `depth` take one sample through each pixel's middle.
+Film render(const RenderScene&, const RenderSettings& settings, const RenderOptions& options = {});
+
+}  // namespace marrow

@@ -1,0 +1,61 @@
+"""Every mistake of a scene is told, with its place; a good scene is counted."""
+import json
+import unittest
+
+from marrow_program import BAD, POINT, SOURCE, ProgramTest
+
+
+class CheckTest(ProgramTest):
+    def test_a_good_scene_is_counted(self):
+        done = self.expect(0, "check", self.write("point.yaml", POINT))
+        self.assertRegex(done.stdout, r"^point\.yaml: ok: 1 object .*1 material, 1 light\n$")
+        self.assertEqual(done.stderr, "")
+
+    def test_all_mistakes_are_told_with_line_and_caret(self):
+        told = self.expect(65, "check", self.write("bad.yaml", BAD)).stderr
+        lines = BAD.splitlines()
+        for word in ("alpah", "-1"):
+            line = next(i for i, text in enumerate(lines, 1) if word in text)
+            self.assertIn(f"bad.yaml:{line}:", told)
+            self.assertIn(lines[line - 1], told)
+        self.assertIn("^", told)
+        self.assertIn("alpha", told)
+
+    def test_editors_get_json(self):
+        found = json.loads(self.expect(65, "check", self.write("bad.yaml", BAD), "--format", "json").stdout)
+        self.assertGreaterEqual(len(found), 2)
+        for problem in found:
+            self.assertEqual(problem["file"], "bad.yaml")
+            self.assertGreater(problem["line"], 0)
+            self.assertGreater(problem["column"], 0)
+        good = self.expect(0, "check", self.write("point.yaml", POINT), "--format", "json").stdout
+        self.assertEqual(json.loads(good), [])
+
+    def test_overrides_are_checked_like_the_file(self):
+        scene = self.write("point.yaml", POINT)
+        self.expect(0, "check", scene, "-D", "camera.fov=20", "-D", "render.spp=9")
+        self.assertIn("-D", self.expect(65, "check", scene, "-D", "camera.fow=20").stderr)
+
+    def test_each_ugly_scene_is_refused_with_a_place(self):
+        for scene in sorted((SOURCE / "scenes" / "bad").glob("*.yaml")):
+            with self.subTest(scene.name):
+                self.assertRegex(self.expect(65, "check", str(scene)).stderr, r"error: ")
+
+    def test_each_gallery_scene_is_good(self):
+        for scene in sorted((SOURCE / "scenes" / "gallery").glob("*.yaml")):
+            with self.subTest(scene.name):
+                self.expect(0, "check", str(scene))
+
+
+class SchemaTest(ProgramTest):
+    def test_the_schema_is_json_schema(self):
+        text = self.expect(0, "schema").stdout
+        self.assertIn("draft-07", json.loads(text)["$schema"])
+        self.assertIn('"objects"', text)
+
+    def test_readers_get_text(self):
+        self.assertIn("objects", self.expect(0, "schema", "--markdown").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

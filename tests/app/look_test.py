@@ -1,0 +1,43 @@
+"""slice and info: windows into a scene."""
+import json
+import unittest
+
+from marrow_program import POINT, TWO_OBJECTS, ProgramTest
+
+
+class SliceTest(ProgramTest):
+    def test_a_slice_is_a_picture_or_numbers(self):
+        scene = self.write("point.yaml", POINT)
+        self.expect(0, "slice", scene, "--plane", "z=0", "--width", "64")
+        self.expect(0, "slice", scene, "--plane", "y=-0.5", "-o", "field.exr", "--width", "64", "--window", "-2,-2,2,2")
+        self.assertEqual((self.folder / "slice.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertIn(b"field.value", (self.folder / "field.exr").read_bytes())
+
+    def test_all_fields_or_one(self):
+        scene = self.write("two.yaml", TWO_OBJECTS)
+        self.expect(0, "slice", scene, "--plane", "z=0", "--width", "32", "--object", "other", "--range", "0:2")
+        self.expect(0, "slice", scene, "--plane", "z=0", "--width", "32")
+        self.expect(2, "slice", scene, "--plane", "z=0", "--object", "nobody")
+        self.expect(73, "slice", scene, "--plane", "z=0", "-o", "no/slice.png")
+
+
+class InfoTest(ProgramTest):
+    def test_a_scene_is_counted(self):
+        info = json.loads(self.expect(0, "info", self.write("two.yaml", TWO_OBJECTS), "--json").stdout)
+        self.assertEqual([o["name"] for o in info["objects"]], ["ball", "other", "floor"])
+        self.assertEqual([o["kind"] for o in info["objects"]], ["field", "field", "plane"])
+        self.assertEqual([o.get("primitives") for o in info["objects"]], [1, 2, None])
+        self.assertEqual(info["lights"], ["constant"])
+        self.assertRegex(info["hash"], r"^[0-9a-f]{32}$")
+        for key in ("primitives", "cells", "memory_bytes"):
+            self.assertGreater(info[key], 0)
+        self.assertLess(info["bounds"]["lower"][0], info["bounds"]["upper"][0])
+
+    def test_people_get_text(self):
+        text = self.expect(0, "info", self.write("point.yaml", POINT)).stdout
+        for word in ("ball", "primitives", "cells", "memory", "bounds", "constant", "diffuse"):
+            self.assertIn(word, text)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,72 @@
+"""Runs the program in a folder of its own, and scenes small enough to render in a blink."""
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.environ["MARROW_PROGRAM"]
+SOURCE = pathlib.Path(os.environ["MARROW_SOURCE_DIR"])
+
+POINT = """marrow: 1
+camera: {from: [0, 0, 6], to: [0, 0, 0], fov: 35}
+film: {size: [24, 16]}
+render: {spp: 4, seed: 7}
+lights:
+  - constant: {radiance: [1, 1, 1]}
+materials:
+  skin: {diffuse: {color: [0.8, 0.5, 0.4]}}
+objects:
+  - name: ball
+    material: skin
+    field:
+      blend:
+        kernel: {inverse: 4}
+        alpha: sum
+        of:
+          - point: {at: [0, 0, 0], radius: 1}
+"""
+
+TWO_OBJECTS = POINT + """  - name: other
+    material: skin
+    field:
+      union:
+        of:
+          - blend: {of: [{point: {at: [2, 0, 0], radius: 0.5}}]}
+          - blend: {of: [{point: {at: [3, 0, 0], radius: 0.5}}]}
+  - name: floor
+    material: skin
+    plane: {point: [0, -1, 0], normal: [0, 1, 0]}
+"""
+
+BAD = POINT.replace("radius: 1", "radius: -1").replace("alpha: sum", "alpah: sum")
+
+
+class ProgramTest(unittest.TestCase):
+    """Each test has a fresh folder, which is the program's current one."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text, encoding="utf-8")
+        return name
+
+    def environment(self, **variables):
+        keep = {name: value for name, value in os.environ.items() if name not in ("OCIO", "SOURCE_DATE_EPOCH")}
+        return keep | variables
+
+    def run_marrow(self, *arguments, stdin="", timeout=60, **variables):
+        return subprocess.run([PROGRAM, *arguments], cwd=self.folder, input=stdin, text=True, capture_output=True,
+                              timeout=timeout, env=self.environment(**variables))
+
+    def expect(self, code, *arguments, **keywords):
+        """Runs, checks the exit code, and returns the finished process."""
+        done = self.run_marrow(*arguments, **keywords)
+        self.assertEqual(done.returncode, code, f"{arguments}\n{done.stdout}\n{done.stderr}")
+        return done
+
+    def files(self):
+        return sorted(path.name for path in self.folder.iterdir())

@@ -1,0 +1,66 @@
+"""Numbers of a field, against a closed form: a point of radius 1 and degree 4 has f = (1/d)^3."""
+import json
+import math
+import unittest
+
+from marrow_program import POINT, TWO_OBJECTS, ProgramTest
+
+POINTS = [(0.5, 0, 0), (0, 2, 0), (1, 1, 1), (-3, 0.25, 1e-3)]
+BASIC = ["point", "value", "gradient", "iso", "inside"]
+OF_BLEND = ["sum", "sum_gradient", "si_gradient", "si_norm", "alpha", "corrected", "corrected_gradient"]
+
+
+class ProbeTest(ProgramTest):
+    def probe(self, scene, points, *arguments):
+        text = "".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in points)
+        return json.loads(self.expect(0, "probe", scene, "--points", "-", *arguments, stdin=text).stdout)
+
+    def assert_near(self, found, wanted):
+        self.assertLessEqual(abs(found - wanted), 1e-13 * abs(wanted), f"{found} is not {wanted}")
+
+    def test_a_single_point_is_the_closed_form(self):
+        answers = self.probe(self.write("point.yaml", POINT), POINTS, "--object", "ball", "--format", "json")
+        self.assertEqual(len(answers), len(POINTS))
+        for point, answer in zip(POINTS, answers):
+            distance = math.sqrt(sum(x * x for x in point))
+            self.assertEqual(list(answer), BASIC + OF_BLEND)
+            self.assertEqual(answer["point"], list(point))
+            self.assert_near(answer["sum"], distance**-3)
+            self.assertEqual(answer["value"], answer["corrected"])
+            self.assertEqual(answer["gradient"], answer["corrected_gradient"])
+            self.assertEqual(answer["inside"], answer["value"] > answer["iso"])
+            along = sum(g * x for g, x in zip(answer["sum_gradient"], point)) / distance
+            self.assert_near(along, -3 * distance**-4)
+
+    def test_numbers_survive_the_text(self):
+        scene = self.write("point.yaml", POINT)
+        self.assertEqual(self.probe(scene, POINTS), self.probe(scene, POINTS))
+        self.assertEqual(self.probe(scene, []), [])
+
+    def test_a_union_has_no_blend_to_tell_of(self):
+        answer = self.probe(self.write("two.yaml", TWO_OBJECTS), POINTS[:1], "--object", "other")[0]
+        self.assertEqual(list(answer), BASIC)
+
+    def test_on_the_skeleton_the_answer_is_still_json(self):
+        answer = self.probe(self.write("point.yaml", POINT), [(0, 0, 0)])[0]
+        self.assertEqual(answer["sum"], math.inf)
+        self.assertTrue(answer["inside"])
+
+    def test_bad_lines_are_all_told(self):
+        scene = self.write("point.yaml", POINT)
+        self.write("points.txt", "# x y z\n0 0 1\n\n1 two 3\n1 2\n1 2 3 4\nnan 0 0\n")
+        done = self.expect(65, "probe", scene, "--object", "ball", "--points", "points.txt")
+        for line in (4, 5, 6, 7):
+            self.assertIn(f"points.txt:{line}:", done.stderr)
+        self.assertEqual(done.stdout, "")
+
+    def test_objects_are_chosen_by_name(self):
+        scene = self.write("two.yaml", TWO_OBJECTS)
+        self.assertIn("`other`", self.expect(2, "probe", scene, "--object", "othr", "--points", "-").stderr)
+        self.assertIn("not a field", self.expect(2, "probe", scene, "--object", "floor", "--points", "-").stderr)
+        self.expect(2, "probe", scene, "--points", "-")
+        self.assertIn("gone.txt", self.expect(66, "probe", scene, "--object", "ball", "--points", "gone.txt").stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

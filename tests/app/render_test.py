@@ -1,0 +1,111 @@
+"""From a scene file to picture files: the same bytes each time, and nothing lost when something is wrong."""
+import os
+import signal
+import subprocess
+import time
+import unittest
+
+from marrow_program import BAD, POINT, PROGRAM, ProgramTest
+
+EXR = b"\x76\x2f\x31\x01"
+PNG = b"\x89PNG\r\n\x1a\n"
+
+
+class RenderTest(ProgramTest):
+    def bytes_of(self, *arguments):
+        self.expect(0, "render", "point.yaml", "-o", "a.exr", "--png", "a.png", *arguments, SOURCE_DATE_EPOCH="1")
+        return (self.folder / "a.exr").read_bytes(), (self.folder / "a.png").read_bytes()
+
+    def test_the_default_outputs_have_the_name_of_the_scene(self):
+        (self.folder / "scenes").mkdir()
+        self.write("scenes/point.yaml", POINT)
+        done = self.expect(0, "render", "scenes/point.yaml")
+        self.assertEqual(self.files(), ["point.exr", "point.png", "scenes"])
+        self.assertEqual((self.folder / "point.exr").read_bytes()[:4], EXR)
+        self.assertEqual((self.folder / "point.png").read_bytes()[:8], PNG)
+        self.assertEqual(done.stdout, "")
+        self.assertIn("point.exr", done.stderr)
+
+    def test_only_what_is_asked_for_is_written(self):
+        scene = self.write("point.yaml", POINT)
+        for arguments, name in ((["-o", "x.png"], "x.png"), (["--png", "y.png"], "y.png"), (["-o", "z.exr"], "z.exr")):
+            self.assertEqual(self.expect(0, "render", scene, "--quiet", *arguments).stderr, "")
+            self.assertEqual(self.files(), [scene, name])
+            (self.folder / name).unlink()
+
+    def test_the_same_bytes_again_and_for_any_number_of_threads(self):
+        self.write("point.yaml", POINT)
+        first = self.bytes_of("-t", "1")
+        self.assertEqual(self.bytes_of("-t", "1"), first)
+        self.assertEqual(self.bytes_of("-t", "2"), first)
+        self.assertNotEqual(self.bytes_of("--seed", "8")[0], first[0])
+
+    def test_a_bad_scene_leaves_old_pictures_alone(self):
+        self.write("bad.yaml", BAD)
+        self.write("bad.exr", "old")
+        self.assertIn("bad.yaml:", self.expect(65, "render", "bad.yaml").stderr)
+        self.assertEqual((self.folder / "bad.exr").read_text(), "old")
+        self.assertEqual(self.files(), ["bad.exr", "bad.yaml"])
+
+    def test_outputs_are_tried_before_the_work(self):
+        scene = self.write("point.yaml", POINT)
+        for output in ("no/such/folder.exr", "/proc/picture.exr"):
+            start = time.monotonic()
+            done = self.expect(73, "render", scene, "--spp", "1000000", "-o", output)
+            self.assertIn(output, done.stderr)
+            self.assertLess(time.monotonic() - start, 10)
+        self.assertEqual(self.files(), [scene])
+
+    def test_a_full_disk_is_an_error(self):
+        scene = self.write("point.yaml", POINT)
+        self.assertIn("/dev/full", self.expect(74, "render", scene, "-o", "/dev/full").stderr)
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run([PROGRAM, "schema"], stdout=full, stderr=subprocess.PIPE, check=False)
+        self.assertEqual(done.returncode, 74)
+
+    def test_a_signal_keeps_what_there_is(self):
+        scene = self.write("point.yaml", POINT)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with subprocess.Popen([PROGRAM, "render", scene, "--spp", "10000000", "-o", "a.exr", "--progress", "json"],
+                                  cwd=self.folder, env=self.environment(), stderr=subprocess.PIPE, text=True) as process:
+                for line in process.stderr:
+                    if '"render"' in line:
+                        break
+                process.send_signal(number)
+                process.stderr.read()
+                self.assertEqual(process.wait(timeout=30), 75)
+            self.assertEqual((self.folder / "a.exr").read_bytes()[:4], EXR)
+            (self.folder / "a.exr").unlink()
+
+    def test_a_time_limit_ends_a_render_well(self):
+        scene = self.write("point.yaml", POINT)
+        start = time.monotonic()
+        self.expect(0, "render", scene, "--spp", "10000000", "--time", "0.5s", "-o", "a.exr")
+        self.assertLess(time.monotonic() - start, 20)
+
+    def test_progress_is_one_line_at_a_time_without_a_terminal(self):
+        scene = self.write("point.yaml", POINT)
+        plain = self.expect(0, "render", scene, "-o", "a.exr").stderr
+        self.assertIn("render 100.0 %", plain)
+        self.assertNotIn("\r", plain)
+
+    def test_a_terminal_gets_a_bar_that_is_wiped(self):
+        scene = self.write("point.yaml", POINT)
+        terminal, end = os.openpty()
+        process = subprocess.Popen([PROGRAM, "render", scene, "--time", "1s", "--spp", "10000000", "-o", "a.exr"],
+                                   cwd=self.folder, env=self.environment(), stderr=end)
+        os.close(end)
+        text = b""
+        try:
+            while chunk := os.read(terminal, 4096):
+                text += chunk
+        except OSError:
+            pass  # the other end of a terminal is closed: Linux says EIO
+        self.assertEqual(process.wait(timeout=30), 0)
+        os.close(terminal)
+        self.assertRegex(text, rb"\[#*\.*\] +\d+ %.*left")
+        self.assertIn(b"\r\x1b[Kwrote a.exr", text)
+
+
+if __name__ == "__main__":
+    unittest.main()

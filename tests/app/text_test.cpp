@@ -1,0 +1,33 @@
+// Numbers and durations: what is read is what was meant, and nothing else is read.
+#include "renderer/app/text.h"
+
+#include <gtest/gtest.h>
+
+namespace marrow {
+namespace {
+
+TEST(Decimal, ReadsWholeNumbersAndNothingBeside) {
+  EXPECT_EQ(parse_decimal("-1.5e2"), -150);
+  EXPECT_EQ(parse_decimal("+3"), 3);
+  for (const auto* wrong : {"", "+", "+-1", "1 ", " 1", "1x", "nan", "inf", "1e999", "0x10", "1,5"})
+    EXPECT_FALSE(parse_decimal(wrong)) << wrong;
+}
+
+TEST(Duration, AddsHoursMinutesAndSeconds) {
+  EXPECT_EQ(parse_duration("90"), 90);
+  EXPECT_EQ(parse_duration("90s"), 90);
+  EXPECT_EQ(parse_duration("10m"), 600);
+  EXPECT_EQ(parse_duration("1h30m"), 5400);
+  EXPECT_EQ(parse_duration("1h0.5s"), 3600.5);
+  for (const auto* wrong : {"", "s", "-1s", "0", "1s1h", "1m1m", "1d", "ten", "1h-1m"})
+    EXPECT_FALSE(parse_duration(wrong)) << wrong;
+}
+
+TEST(Split, GivesOnePieceMoreThanSeparators) {
+  EXPECT_EQ(split("a,,b", ',').size(), 3u);
+  EXPECT_EQ(split("", ',').size(), 1u);
+  EXPECT_EQ(split("a,", ',').back(), "");
+}
+
+}  // namespace
+}  // namespace marrow

@@ -1,0 +1,60 @@
+// The published and the recomputed key angles (field-maths 6.1, 6.2).
+#include "field/blend/contact.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "field/blend/blend_field.h"
+#include "tests/field/random.h"
+
+namespace marrow {
+namespace {
+
+TEST(Contact, HasTheKeyAngles) {
+  const double paper[] = {0.93025965372318, 1.1654470907369, 1.2805967045632,
+                          1.3459487976559,  1.3875224532524, 1.4161713205957};
+  const double exact[] = {0.84188329890419, 1.115852139913, 1.2504549961483};
+  for (int n = 3; n <= 8; ++n) EXPECT_NEAR(contact_alpha(n), paper[n - 3], 1e-12) << n;
+  for (int n = 3; n <= 5; ++n) EXPECT_NEAR(contact_alpha(n, true, Projection::Exact), exact[n - 3], 1e-12) << n;
+}
+
+TEST(Contact, WithoutCavityIsInClosedForm) {
+  for (int n = 3; n <= max_kernel_degree; ++n) {
+    EXPECT_NEAR(contact_alpha(n, false), atan((n - 1) * pow(2, 1.0 / (n - 1))), 1e-13) << n;
+    EXPECT_NEAR(contact_alpha(n, false, Projection::Exact), atan(n - 1), 1e-13) << n;
+  }
+}
+
+// Two balls join at a little less than contact and are apart at a little more.
+TEST(Contact, JoinsTwoBallsWhenTheyTouch) {
+  for (int n = 3; n <= max_kernel_degree; ++n) {
+    const auto between = [&](double distance) {
+      BlendField blend;
+      blend.degree = n;
+      blend.alpha = contact_alpha(n);
+      blend.points.add({{0, 0, 0}, 0.7}, {});
+      blend.points.add({{distance, 0, 0}, 0.7}, {});
+      return corrected_value(blend, {distance / 2, 0, 0});
+    };
+    EXPECT_NEAR(between(1.4), 1, 1e-13) << n;
+    EXPECT_GT(between(1.39), 1) << n;
+    EXPECT_LT(between(1.41), 1) << n;
+  }
+}
+
+TEST(Contact, AtZeroAngleBallsJoinAtTheDistanceOfTheClosedForm) {
+  for (int n = 3; n <= max_kernel_degree; ++n) {
+    BlendField blend;
+    blend.degree = n;
+    blend.alpha = 0;
+    const double d = std::sqrt(n) * pow(2 / std::sqrt(n + 1), (n + 1.0) / n);  // field-maths 0, line 7
+    blend.points.add({{0, 0, 0}, 1}, {});
+    blend.points.add({{d, 0, 0}, 1}, {});
+    EXPECT_NEAR(corrected_value(blend, {d / 2, 0, 0}), 1, 1e-12) << n;
+  }
+}
+
+}  // namespace
+}  // namespace marrow

@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""Checks that includes follow the arrows: who may include whom, and where a third-party header may appear.
+
+  layering.py check ROOT       exits 1 and names every include against the arrows
+  layering.py self-test ROOT   exits 1 if the check does not notice wrong includes
+"""
+import pathlib
+import re
+import sys
+import tempfile
+
+# A folder may include itself and the folders named here. A trailing file name opens that file only.
+ARROWS = {
+    "field/base": [],
+    "field/math": ["field/base"],
+    "field/description": ["field/base", "field/math"],
+    "field/kernel": ["field/base", "field/math", "field/description"],
+    "field/skeleton": ["field/base", "field/math", "field/description", "field/kernel"],
+    "field/blend": ["field/base", "field/math", "field/description", "field/kernel", "field/skeleton"],
+    "field/program": ["field/base", "field/math", "field/description", "field/kernel", "field/skeleton",
+                      "field/blend"],
+    "field/trace": ["field/base", "field/math", "field/description", "field/kernel", "field/skeleton",
+                    "field/blend", "field/program"],
+    "materials": ["field/base", "field/math"],
+    "renderer/output": ["field/base", "field/math"],
+    "renderer/slice": ["field/base", "field/math", "renderer/output"],
+    "renderer/scene": ["field/base", "field/math", "field/description", "field/kernel/inverse_family.h", "materials"],
+    "renderer/geometry": ["field", "materials/rgb.h", "renderer/scene/scene_description.h"],
+    "renderer/transport": ["field/base", "field/math", "materials", "renderer/scene/scene_description.h",
+                           "renderer/geometry/surfaces.h", "renderer/output"],
+    "renderer/app": ["field", "materials", "renderer"],
+    "tests": ["field", "materials", "renderer"],
+}
+
+# A library's headers appear only where the library is adapted.
+LIBRARIES = {
+    r"embree3/": ["renderer/geometry/"],
+    r"(tbb|oneapi)/": ["field/trace/", "renderer/"],
+    r"(OpenEXR|Imath)/|Imf|Imath|half\.h": ["renderer/output/exr.cpp"],
+    r"OpenImageIO/": ["renderer/output/image_file.cpp"],
+    r"OpenColorIO/": ["renderer/output/display.cpp"],
+    r"cairo": ["renderer/slice/", "renderer/output/"],
+    r"yaml-cpp/": ["renderer/scene/"],
+    r"nlohmann/": ["renderer/scene/", "renderer/app/", "tests/"],
+    r"CLI/": ["renderer/app/options.cpp"],
+    r"xxhash": ["renderer/scene/"],
+    r"sleef": ["field/math/"],
+    r"fmt/": ["field/", "materials/", "renderer/", "tests/"],
+    r"(gtest|gmock)/": ["tests/"],
+}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
+
+
+def folder_of(path):
+    """The entry of ARROWS that holds the file, or None."""
+    inside = [name for name in ARROWS if path.startswith(name + "/")]
+    return max(inside, key=len, default=None)
+
+
+def may_include(path, target):
+    home = folder_of(path)
+    allowed = [home] + ARROWS[home]
+    return any(target == name or target.startswith(name + "/") for name in allowed)
+
+
+def may_use_library(path, header):
+    for pattern, places in LIBRARIES.items():
+        if re.match(pattern, header):
+            in_tests = path.startswith("tests/")
+            return in_tests or (any(path.startswith(place) for place in places) and path.endswith(".cpp"))
+    return True
+
+
+def complaints_of(path, text):
+    if folder_of(path) is None:
+        yield f"{path}: its folder has no entry in ARROWS of tests/layering.py"
+        return
+    for kind, target in INCLUDE.findall(text):
+        if kind == '"' and not may_include(path, target):
+            yield f'{path}: #include "{target}" is against the arrows'
+        if kind == "<" and not may_use_library(path, target):
+            yield f"{path}: #include <{target}> belongs into the one .cpp that adapts the library"
+
+
+def complaints(root):
+    for top in ("field", "materials", "renderer", "tests"):
+        for file in sorted((root / top).rglob("*")):
+            if file.suffix in (".h", ".cpp"):
+                yield from complaints_of(file.relative_to(root).as_posix(), file.read_text(encoding="utf-8"))
+
+
+def self_test():
+    wrong = {
+        "field/math/a.h": '#include "field/program/field_program.h"\n',
+        "field/program/b.cpp": '#include "renderer/scene/scene_description.h"\n',
+        "materials/c.h": '#include "field/blend/correction.h"\n',
+        "renderer/output/d.h": "#include <OpenEXR/ImfHeader.h>\n",
+        "renderer/app/e.cpp": "#include <embree3/rtcore.h>\n",
+        "field/unknown/f.h": "",
+    }
+    right = {
+        "field/program/g.cpp": '#include <vector>\n#include "field/math/vec3.h"\n',
+        "renderer/geometry/h.cpp": '#include <embree3/rtcore.h>\n#include "renderer/scene/scene_description.h"\n',
+        "tests/field/i.cpp": '#include <gtest/gtest.h>\n#include "renderer/app/options.h"\n',
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder)
+        for name, text in (wrong | right).items():
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            (root / name).write_text(text, encoding="utf-8")
+        found = sorted(complaint.split(":")[0] for complaint in complaints(root))
+    if found != sorted(wrong):
+        print(f"expected complaints about {sorted(wrong)}, got {found}")
+        return 1
+    return 0
+
+
+def main(mode, root):
+    if mode == "self-test":
+        return self_test()
+    found = list(complaints(pathlib.Path(root)))
+    print("\n".join(found) if found else "all includes follow the arrows")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

@@ -1,0 +1,188 @@
+// Scenes that are right, and what they say.
+#include "renderer/scene/read_scene.h"
+
+#include <cmath>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scene_text.h"
+
+namespace marrow {
+namespace {
+
+using testing::HasSubstr;
+using ReadScene = SceneText;
+
+TEST_F(ReadScene, GivesWhatTheTextSays) {
+  const auto scene = read(R"(marrow: 1
+units: um
+up: z
+camera: {type: orthographic, from: [0, 1, 6], height: 4}
+film: {size: [320, 200]}
+render: {integrator: normals, spp: 3, seed: 18446744073709551615, max_depth: 2}
+lights:
+  - sun: {direction: [0, 0, 2], irradiance: "#fff", angle: 0.5}
+  - rectangle: {center: [0, 4, 2], size: [2, 3], radiance: 7}
+  - point: {at: [1, 2, 3], intensity: {kelvin: 5600, luminance: 3}}
+materials:
+  skin: {diffuse: {color: [0.8, 0.5, 0.4]}}
+  gold: {conductor: {metal: gold, roughness: 0.1}}
+objects:
+  - material: gold
+    field:
+      blend:
+        kernel: {inverse: 5}
+        alpha: 30deg
+        cavity: false
+        projection: exact
+        of:
+          - segment: {from: [0, 0, 0], to: [1, 0, 0], radius: [0.5, 0.2], alpha: 0.9, material: skin, model: distance}
+          - polyline: {points: [[0, 0, 0], [1, 0, 0], [1, 1, 0]], radius: 0.3}
+  - {name: floor, plane: {point: [0, -1, 0], normal: [0, 1, 0]}}
+)");
+  ASSERT_TRUE(scene) << render_all(scene.why(), record.sources);
+  EXPECT_EQ(scene->units, "um");
+  EXPECT_TRUE(scene->z_up);
+  EXPECT_EQ(scene->camera.type, CameraDescription::Type::Orthographic);
+  EXPECT_EQ(scene->film.height, 200);
+  EXPECT_EQ(scene->render.seed, UINT64_MAX);
+  EXPECT_EQ(std::get<SunLight>(scene->lights[0].what).irradiance, Rgb(1));
+  EXPECT_EQ(std::get<RectangleLight>(scene->lights[1].what).height, 3);
+  EXPECT_NEAR(luminance(std::get<PointLight>(scene->lights[2].what).intensity), 3, 1e-12);
+  EXPECT_EQ(scene->materials[1].name, "gold");
+  EXPECT_EQ(scene->objects[0].name, "object 1");
+  EXPECT_EQ(scene->objects[0].material, MaterialId{1});
+  EXPECT_EQ(scene->materials[scene->objects[1].material.index()].name, "default");
+
+  const auto& field = std::get<FieldDescription>(scene->objects[0].shape);
+  const auto& blend = std::get<Blend>(field[field.root].what);
+  EXPECT_EQ(blend.kernel.degree, 5);
+  EXPECT_NEAR(std::get<double>(blend.alpha), 0.52359877559829887, 1e-15);
+  EXPECT_FALSE(blend.cavity);
+  EXPECT_EQ(blend.projection, Projection::Exact);
+  const auto& segment = std::get<Primitive>(field[blend.of[0]].what);
+  EXPECT_EQ(std::get<SegmentSkeleton>(segment.skeleton), (SegmentSkeleton{{0, 0, 0}, {1, 0, 0}, 0.5, 0.2}));
+  EXPECT_EQ(segment.alpha, 0.9);
+  EXPECT_EQ(segment.model, SkeletonModel::Distance);
+  EXPECT_EQ(segment.material, MaterialId{0});
+  const auto& line = std::get<Primitive>(field[blend.of[1]].what);
+  EXPECT_EQ(std::get<PolylineSkeleton>(line.skeleton).radii, (std::vector<double>{0.3, 0.3, 0.3}));
+  EXPECT_EQ(field[blend.of[1]].where.line, 24);
+}
+
+TEST_F(ReadScene, NeedsOnlyItsVersion) {
+  const auto scene = read("marrow: 1\n");
+  ASSERT_TRUE(scene);
+  EXPECT_EQ(scene->film.width, 1280);
+  EXPECT_TRUE(scene->objects.empty());
+}
+
+TEST_F(ReadScene, ContactIsTheDefaultAlphaAndSumAWord) {
+  const auto scene = read(
+      "marrow: 1\nobjects:\n  - field: {blend: {alpha: sum, of: [{point: {at: [0, 0, 0]}}]}}\n"
+      "  - field: {blend: {of: [{point: {at: [0, 0, 0]}}]}}\n");
+  ASSERT_TRUE(scene) << render_all(scene.why(), record.sources);
+  const auto alpha = [&](std::size_t i) {
+    const auto& field = std::get<FieldDescription>(scene->objects[i].shape);
+    return std::get<Blend>(field[field.root].what).alpha.index();
+  };
+  EXPECT_EQ(alpha(0), 1u);
+  EXPECT_EQ(alpha(1), 0u);
+}
+
+TEST_F(ReadScene, TransformsScaleThenRotateThenMove) {
+  const auto scene = read(
+      "marrow: 1\nobjects:\n  - field: {transform: {translate: [10, 0, 0], rotate: {axis: [0, 0, 1], "
+      "angle: 90}, scale: [2, 1, 1], of: {point: {at: [0, 0, 0]}}}}\n");
+  ASSERT_TRUE(scene) << render_all(scene.why(), record.sources);
+  const auto& field = std::get<FieldDescription>(scene->objects[0].shape);
+  const Vec3d moved = std::get<Transform>(field[field.root].what).parent_from_child.point({1, 0, 0});
+  EXPECT_LT(length(moved - Vec3d{10, 2, 0}), 1e-12);
+}
+
+TEST_F(ReadScene, UsesAreCopiesAndChildrenStandBeforeParents) {
+  const auto scene = read(R"(marrow: 1
+defs:
+  pair: {union: {of: [{use: ball}, {use: ball}]}}
+  ball: {point: {at: [0, 0, 0], radius: 2}}
+objects:
+  - field: {union: {of: [{use: pair}, {use: ball}, {use: pair}]}}
+)");
+  ASSERT_TRUE(scene) << render_all(scene.why(), record.sources);
+  const auto& field = std::get<FieldDescription>(scene->objects[0].shape);
+  EXPECT_EQ(field.nodes.size(), 8u);
+  for (std::size_t i = 0; i < field.nodes.size(); ++i)
+    if (const auto* all = std::get_if<Union>(&field.nodes[i].what)) {
+      for (const FieldNodeId child : all->of) EXPECT_LT(child.index(), i);
+    }
+  EXPECT_EQ(field.root.index(), 7u);
+}
+
+TEST_F(ReadScene, ChainsOfUsesMayBeLong) {
+  std::string text = "marrow: 1\ndefs:\n  x0: {point: {at: [0, 0, 0]}}\n";
+  for (int i = 1; i <= 1000; ++i)
+    text += "  x" + std::to_string(i) + ": {transform: {of: {use: x" + std::to_string(i - 1) + "}}}\n";
+  const auto scene = read(text + "objects: [{field: {use: x1000}}]\n");
+  ASSERT_TRUE(scene) << render_all(scene.why(), record.sources);
+  EXPECT_EQ(std::get<FieldDescription>(scene->objects[0].shape).nodes.size(), 1001u);
+}
+
+TEST_F(ReadScene, IncludesBringMaterialsAndSubtrees) {
+  std::filesystem::create_directories(folder / "parts");
+  write("parts/a.yaml", "include: b.yaml\nmaterials: {skin: {diffuse: {color: 0.5}}}\n");
+  write("parts/b.yaml", "defs: {neuron: {blend: {of: [{skeleton: {file: n.swc}}]}}}\n");
+  write("parts/n.swc", "1 1 0 0 0 1 -1\n2 1 1 0 0 1 1\n");
+  const auto scene = read(
+      "marrow: 1\ninclude: [parts/a.yaml, parts/b.yaml]\nobjects:\n"
+      "  - {name: n, material: skin, field: {use: neuron}}\n");
+  ASSERT_TRUE(scene) << render_all(scene.why(), record.sources);
+  EXPECT_EQ(record.files.size(), 5u);  // b.yaml is looked at twice, and merged once
+}
+
+TEST_F(ReadScene, IncludesAreAtMostSixteenDeep) {
+  for (int i = 0; i < 18; ++i)
+    write("f" + std::to_string(i) + ".yaml", "include: f" + std::to_string(i + 1) + ".yaml\n");
+  write("f18.yaml", "defs: {}\n");
+  EXPECT_THAT(error_of("marrow: 1\ninclude: f0.yaml\n"), HasSubstr("more than 16 deep"));
+  EXPECT_TRUE(read("marrow: 1\ninclude: f4.yaml\n"));
+}
+
+TEST_F(ReadScene, ASkeletonThatIsPlacedTwiceIsHeldOnce) {
+  write("n.swc", "1 1 0 0 0 1 -1\n2 1 1 0 0 0 1\n");
+  const auto scene =
+      read("marrow: 1\nobjects:\n  - field: {skeleton: {file: n.swc}}\n  - field: {skeleton: {file: n.swc}}\n");
+  ASSERT_TRUE(scene) << render_all(scene.why(), record.sources);
+  const auto graph = [&](std::size_t i) {
+    const auto& field = std::get<FieldDescription>(scene->objects[i].shape);
+    return std::get<SharedSkeletonGraph>(std::get<Primitive>(field[field.root].what).skeleton);
+  };
+  EXPECT_EQ(graph(0), graph(1));
+  ASSERT_EQ(record.warnings.size(), 1u);
+  EXPECT_THAT(record.warnings[0].message, HasSubstr("1 of 2 nodes have the radius 0"));
+}
+
+TEST_F(ReadScene, TheHashIsOfAllThatWasRead) {
+  write("n.swc", "1 1 0 0 0 1 -1\n");
+  const std::string text = "marrow: 1\nobjects:\n  - field: {skeleton: {file: n.swc}}\n";
+  const std::string hash = read(text)->hash;
+  EXPECT_EQ(hash.size(), 32u);
+  EXPECT_EQ(read(text)->hash, hash);
+  EXPECT_NE(read(text + "# more\n")->hash, hash);
+  EXPECT_NE(read(text, {.overrides = {"render.spp=64"}})->hash, hash);
+  write("n.swc", "1 1 0 0 0 2 -1\n");
+  EXPECT_NE(read(text)->hash, hash);
+}
+
+TEST_F(ReadScene, SamplesOfTheRepositoryLoad) {
+  for (const char* name : {"rat_ca1_pyramidal_NMO_49821.swc", "tree.swc", "vessel.swc"}) {
+    const std::string file = std::string(MARROW_SOURCE_DIR) + "/scenes/data/" + name;
+    EXPECT_TRUE(read("marrow: 1\nobjects:\n  - field: {skeleton: {file: " + file + "}}\n")) << name;
+  }
+}
+
+TEST_F(ReadScene, AByteOrderMarkIsNoPartOfTheText) { EXPECT_TRUE(read("\xEF\xBB\xBFmarrow: 1\n")); }
+
+}  // namespace
+}  // namespace marrow
