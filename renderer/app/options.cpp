@@ -97,7 +97,7 @@ void describe(CLI::App& app, RenderCommand& c) {
   app.add_option("--view", c.view, "View of the display for the PNG")->type_name("NAME");
   add_path(app, "--ocio", c.ocio, "OpenColorIO configuration; default: $OCIO, else the built-in one");
   app.add_option("--isa", c.isa, "Instruction set for tracing; the picture is the same for all")
-      ->check(CLI::IsMember({"sse2", "sse4.2", "avx", "avx2", "avx512"}));
+      ->check(CLI::IsMember({"sse4", "avx2", "avx512"}));
   auto* progress = app.add_option("--progress", c.progress, "auto, bar, plain or json (lines on standard error)");
   progress->transform(CLI::CheckedTransformer(styles).description(""))->type_name("STYLE");
   app.add_flag_callback(

@@ -33,20 +33,14 @@ float embree_t(const Query& q, double t) {
   return std::nextafter(static_cast<float>((t - q.t_start) * (1 + 1e-6)), std::numeric_limits<float>::infinity());
 }
 
-const Solid& solid_of(void* user_data) { return *static_cast<const Solid*>(user_data); }
+const PlacedSolid& placed(void* user_data) { return *static_cast<const PlacedSolid*>(user_data); }
 
 float below(double v) { return std::nextafter(static_cast<float>(v), -std::numeric_limits<float>::infinity()); }
 float above(double v) { return std::nextafter(static_cast<float>(v), std::numeric_limits<float>::infinity()); }
 
-// Only needed while the hierarchy is built.
-struct Padding {
-  const Solid& solid;
-  double margin;
-};
-
 void bounds_callback(const RTCBoundsFunctionArguments* a) {
-  const auto& padding = *static_cast<const Padding*>(a->geometryUserPtr);
-  const Box3 box = padding.solid.element_box(a->primID).padded(padding.margin);
+  const PlacedSolid& p = placed(a->geometryUserPtr);
+  const Box3 box = p.solid->element_box(a->primID).padded(p.padding);
   *a->bounds_o = {below(box.lower.x), below(box.lower.y), below(box.lower.z), 0,
                   above(box.upper.x), above(box.upper.y), above(box.upper.z), 0};
 }
@@ -55,7 +49,7 @@ void bounds_callback(const RTCBoundsFunctionArguments* a) {
 void intersect_callback(const RTCIntersectFunctionNArguments* a) {
   if (a->valid[0] == 0) return;
   auto& q = *static_cast<Query*>(a->context);
-  const Solid& solid = solid_of(a->geometryUserPtr);
+  const Solid& solid = *placed(a->geometryUserPtr).solid;
   const auto hit = solid.hit(a->primID, q.ray, false);
   if (!hit) return;
   q.evaluations += hit->evaluations;
@@ -75,7 +69,7 @@ void intersect_callback(const RTCIntersectFunctionNArguments* a) {
 void occluded_callback(const RTCOccludedFunctionNArguments* a) {
   if (a->valid[0] == 0) return;
   const auto& q = *static_cast<const Query*>(a->context);
-  const Solid& solid = solid_of(a->geometryUserPtr);
+  const Solid& solid = *placed(a->geometryUserPtr).solid;
   if (solid.hit(a->primID, q.ray, true))
     reinterpret_cast<RTCRay*>(a->ray)->tfar = -std::numeric_limits<float>::infinity();
 }
@@ -112,11 +106,11 @@ RTCRay to_embree(const Query& q, double t_end) {
   return r;
 }
 
-void attach(RTCDevice device, RTCScene scene, Padding& p) {
+void attach(RTCDevice device, RTCScene scene, PlacedSolid& p) {
   RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(g, static_cast<unsigned>(p.solid.element_count()));
-  rtcSetGeometryUserData(g, const_cast<Solid*>(&p.solid));  // read only: see solid_of
-  rtcSetGeometryBoundsFunction(g, bounds_callback, &p);
+  rtcSetGeometryUserPrimitiveCount(g, static_cast<unsigned>(p.solid->element_count()));
+  rtcSetGeometryUserData(g, &p);
+  rtcSetGeometryBoundsFunction(g, bounds_callback, nullptr);
   rtcSetGeometryIntersectFunction(g, intersect_callback);
   rtcSetGeometryOccludedFunction(g, occluded_callback);
   rtcCommitGeometry(g);
@@ -139,9 +133,10 @@ Result<std::unique_ptr<EmbreeSurfaces>> EmbreeSurfaces::make(std::vector<PlacedS
   const double largest = s->bounds_.empty() ? 0 : largest_coordinate(s->bounds_);
   const double margin = std::ldexp(8 * largest, -24);
   s->padded_bounds_ = s->bounds_.padded(margin);
-  std::vector<Padding> paddings;
-  for (const PlacedSolid& p : s->solids_) paddings.push_back({*p.solid, margin});
-  for (Padding& p : paddings) attach(s->device_.get(), s->scene_.get(), p);
+  for (PlacedSolid& p : s->solids_) {
+    p.padding = margin;
+    attach(s->device_.get(), s->scene_.get(), p);
+  }
   rtcCommitScene(s->scene_.get());
   if (rtcGetDeviceError(s->device_.get()) != RTC_ERROR_NONE) return failure("Embree could not build its hierarchy");
   return s;

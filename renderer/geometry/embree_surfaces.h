@@ -18,6 +18,7 @@ namespace marrow {
 struct PlacedSolid {
   std::unique_ptr<Solid> solid;
   ObjectId object;
+  double padding = 0;  ///< of the boxes of its elements; set by EmbreeSurfaces
 };
 
 struct PlacedPlane {
