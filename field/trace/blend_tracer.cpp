@@ -1,7 +1,6 @@
 #include "field/trace/blend_tracer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -25,19 +24,37 @@ ErrorBudget budget_of(double tolerance, int degree) {
 constexpr double coarse_tolerance = 2e-2;
 
 // [t_enter, t_exit] of the ray in a box; the same plane gives the same t in neighbouring cells.
-std::pair<double, double> clip(const Box3& box, const Ray& ray) {
+std::pair<double, double> clip(const Box3& box, const Ray& ray, const Vec3d& inverse_direction) {
   double enter = ray.t_min, exit = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 3; ++i) {
-    const double o = ray.origin[i], d = ray.direction.vec()[i];
-    if (d == 0) {
+    const double o = ray.origin[i], k = inverse_direction[i];
+    if (std::isinf(k)) {
       if (o < box.lower[i] || o > box.upper[i]) return {1, 0};
       continue;
     }
-    const double a = (box.lower[i] - o) / d, b = (box.upper[i] - o) / d;
+    const double a = (box.lower[i] - o) * k, b = (box.upper[i] - o) * k;
     enter = std::max(enter, std::min(a, b));
     exit = std::min(exit, std::max(a, b));
   }
   return {enter, exit};
+}
+
+Vec3d vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+// How far to go along the normal until the field is certainly below 1, by more than rounding and neighbouring blocks
+// can differ: f and |G| there are bounded by their Taylor polynomials and the remainders B3 and B4 of tracing.md, with
+// series sums up to twice their values at 0 (a step of at most a tenth of the distance). Block coordinates.
+double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent, const IsoCurve& iso, int degree) {
+  constexpr double enough = 2e-5;
+  const double slope = dot(vec(f.gradient), normal), n = degree;
+  double step = 1e-5 * f.nearest;
+  for (; step < 0.1 * f.nearest; step *= 2) {
+    const double x = f.f + slope * step + f.second * n * (n + 1) * step * step;
+    const double y = length(vec(f.si_gradient) + bent * step) + f.third * (n + 1) * (n + 2) * step * step;
+    const double x_low = f.f + slope * step - f.second * n * (n + 1) * step * step;
+    if (iso.margin(x, y) > enough && (!iso.two_sided() || iso.margin(x_low, y) > enough)) break;
+  }
+  return step;
 }
 
 }  // namespace
@@ -48,9 +65,10 @@ struct BlendTracer::State {
   IsoCurve iso;
   PieceCutter cutter;
   std::vector<Piece> pieces;
+  const BlockKernels& kernels;
   NearFar coarse, fine;
   CellTree tree;
-  const BlockKernels& kernels;
+  mutable BlockArena arena;
   mutable std::unique_ptr<std::atomic<const Block*>[]> blocks;
 
   State(BlendField f, const TraceOptions& options, const BlockKernels& k)
@@ -59,11 +77,11 @@ struct BlendTracer::State {
         iso(correction, field.alpha),
         cutter(field.degree, iso.critical_field()),
         pieces(cutter.cut(field)),
-        coarse(field.degree, budget_of(coarse_tolerance, field.degree)),
-        fine(field.degree, budget_of(options.tolerance, field.degree)),
-        tree(pieces, fine, iso, field.degree, {}),
         kernels(k),
-        blocks(new std::atomic<const Block*>[tree.cells().size()]{}) {}
+        coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
+        fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
+        tree(pieces, fine, iso, kernels, field.degree, {}),
+        blocks(new std::atomic<const Block*>[tree.cells().size()] {}) {}
   ~State() {
     for (std::size_t i = 0; i < tree.cells().size(); ++i) delete blocks[i].load();
   }
@@ -76,48 +94,51 @@ Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const T
   const BlockKernels* kernels = block_kernels(options.instruction_set);
   if (kernels == nullptr)
     return failure("instruction set \"" + options.instruction_set + "\" is unknown or not of this machine");
-  return std::unique_ptr<BlendTracer>(
-      new BlendTracer(std::make_unique<State>(std::move(field), options, *kernels)));
+  return std::unique_ptr<BlendTracer>(new BlendTracer(std::make_unique<State>(std::move(field), options, *kernels)));
 }
 
 BlendTracer::BlendTracer(std::unique_ptr<State> state) : state_(std::move(state)) {}
 BlendTracer::~BlendTracer() = default;
 
 std::size_t BlendTracer::cell_count() const { return state_->tree.cells().size(); }
-Box3 BlendTracer::cell_box(std::size_t cell) const { return state_->tree.box(state_->tree.cells()[cell]); }
+Box3 BlendTracer::cell_box(std::size_t cell) const { return state_->tree.cells()[cell].box(); }
 const BlendField& BlendTracer::field() const { return state_->field; }
 
 // Two threads may build the same block; both get the same content, and one copy is kept.
 const Block& BlendTracer::block(std::size_t cell) const {
   std::atomic<const Block*>& slot = state_->blocks[cell];
   if (const Block* ready = slot.load(std::memory_order_acquire)) return *ready;
-  auto made = std::make_unique<const Block>(state_->context(), state_->tree.cells()[cell]);
+  auto made = std::make_unique<const Block>(state_->context(), state_->tree.cells()[cell], state_->arena);
   const Block* expected = nullptr;
   if (slot.compare_exchange_strong(expected, made.get(), std::memory_order_acq_rel)) return *made.release();
   return *expected;
 }
 
 std::optional<CellHit> BlendTracer::first_hit(std::size_t cell, const Ray& ray, bool any) const {
-  auto [enter, exit] = clip(cell_box(cell), ray);
+  const Vec3d& direction = ray.direction;
+  const Vec3d inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
+  auto [enter, exit] = clip(cell_box(cell), ray, inverse);
   if (any) exit = std::min(exit, ray.t_max);
   if (!(enter < exit)) return {};
   const Block& b = block(cell);
   if (b.mask() == 0) return {};
   // Block coordinates, with t counted from the point of the ray nearest to the block's centre.
-  const Vec3d& direction = ray.direction;
   const double t_near = dot(b.center() - ray.origin, ray.direction), scale = 1 / b.half();
   const Vec3d start = (ray.origin - b.center() + direction * t_near) * scale;
-  const double origin[3] = {start.x, start.y, start.z}, along[3] = {direction.x, direction.y, direction.z};
   LocalRay local;
-  for (int i = 0; i < 3; ++i) {
-    local.origin[i] = static_cast<float>(origin[i]);
-    local.direction[i] = static_cast<float>(along[i]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    local.origin[i] = static_cast<float>(start[i]);
+    local.direction[i] = static_cast<float>(direction[i]);
   }
-  MaskWalk walk(b.mask(), origin, along, (enter - t_near) * scale, (exit - t_near) * scale);
+  const double begin = (enter - t_near) * scale;
+  MaskWalk walk(b.mask(), start, direction, inverse, begin, (exit - t_near) * scale);
   CellHit hit;
   for (MaskWalk::Stretch s; walk.next(s);) {
-    const Root root = state_->kernels.first_root(b.view(), local, static_cast<float>(s.begin),
-                                                 static_cast<float>(s.end), any);
+    const Root root = state_->kernels.first_root(b.view(), local,
+                                                 {.t0 = static_cast<float>(s.begin),
+                                                  .t1 = static_cast<float>(s.end),
+                                                  .any = any,
+                                                  .from_surface = s.begin <= begin && enter <= ray.t_min});
     hit.evaluations += static_cast<std::uint32_t>(root.evaluations);
     hit.certified = hit.certified && root.certified;
     if (!root.hit) continue;
@@ -129,37 +150,33 @@ std::optional<CellHit> BlendTracer::first_hit(std::size_t cell, const Ray& ray, 
 
 SurfacePoint BlendTracer::surface_at(std::size_t cell, const Vec3d& position) const {
   const Block& b = block(cell);
-  const auto to_local = [&](const Vec3d& p) {
-    const Vec3d x = (p - b.center()) / b.half();
-    return std::array<float, 3>{static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)};
-  };
-  const PointField f = state_->kernels.point_field(b.view(), to_local(position).data());
-  const Vec3d g{f.si_gradient[0], f.si_gradient[1], f.si_gradient[2]};
+  const Vec3d x = (position - b.center()) / b.half();
+  const float local[3] = {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)};
+  const PointField f = state_->kernels.point_field(b.view(), local);
+  const Vec3d gradient = vec(f.gradient), g = vec(f.si_gradient);
   const float* h = f.hessian;
-  const Vec3d bent{h[0] * g.x + h[3] * g.y + h[4] * g.z, h[3] * g.x + h[1] * g.y + h[5] * g.z,
-                   h[4] * g.x + h[5] * g.y + h[2] * g.z};
-  const Correction::Partials c = state_->correction.partials(f.f, length(g));
-  const Vec3d gradient = Vec3d{f.gradient[0], f.gradient[1], f.gradient[2]} * c.df + bent * c.dG_over_G;
+  const auto bend = [&](const Vec3d& v) {  // H v
+    return Vec3d{h[0] * v.x + h[3] * v.y + h[4] * v.z, h[3] * v.x + h[1] * v.y + h[5] * v.z,
+                 h[4] * v.x + h[5] * v.y + h[2] * v.z};
+  };
+  const double y = length(g);
+  const IsoCurve::Slope c = state_->iso.gradient(f.f, y);
   SurfacePoint out;
-  out.normal = normalize(-gradient);
-  // Away from the surface until the field is below 1 for certain, by more than neighbouring blocks can differ.
-  constexpr float enough = 2e-5F;
-  double step = 1e-5 * f.nearest * b.half();
-  for (int i = 0; i < 12; ++i, step *= 2) {
-    out.outside = position + out.normal * step;
-    if (state_->kernels.margin(b.view(), to_local(out.outside).data()) > enough) break;
-  }
+  out.normal = normalize(-(gradient * c.x + bend(g) * (c.y / std::max(y, 1e-12))));
+  out.outside = position + out.normal * (b.half() * step_outside(f, out.normal, bend(out.normal), state_->iso,
+                                                                 state_->field.degree));
   return out;
 }
 
 TraceStatistics BlendTracer::statistics() const {
   TraceStatistics s;
   s.cells = cell_count();
-  s.bytes = state_->tree.bytes() + state_->pieces.capacity() * sizeof(Piece) + s.cells * sizeof(void*);
+  s.bytes = state_->tree.bytes() + state_->pieces.capacity() * sizeof(Piece) + s.cells * sizeof(void*) +
+            state_->arena.bytes();
   for (std::size_t i = 0; i < s.cells; ++i)
     if (const Block* b = state_->blocks[i].load()) {
       ++s.blocks;
-      s.bytes += b->bytes();
+      s.bytes += sizeof(Block);
       s.sources += static_cast<std::size_t>((b->view().fine.curve_groups + b->view().fine.point_groups) * lanes);
       s.largest_error = std::max(s.largest_error, b->f_error() + b->gradient_error() / state_->field.degree);
     }

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 
+#include "field/trace/block_arena.h"
 #include "field/trace/block_kernels.h"
 #include "field/trace/cell_tree.h"
 
@@ -23,7 +23,8 @@ class Block {
     const BlockKernels& kernels;
     int degree;
   };
-  Block(const Context&, const CellTree::Cell&);
+  /// The sources live in the arena.
+  Block(const Context&, const CellTree::Cell&, BlockArena&);
 
   const BlockView& view() const { return view_; }
   std::uint64_t mask() const { return mask_; }
@@ -32,18 +33,12 @@ class Block {
   /// Certified bounds of the difference between the fine level and the exact field, over the cell.
   double f_error() const { return f_error_; }
   double gradient_error() const { return gradient_error_; }
-  std::size_t bytes() const;
 
  private:
-  struct AlignedDelete {
-    void operator()(float*) const;
-  };
   Vec3d center_;
   double half_;
   double f_error_ = 0, gradient_error_ = 0;
   std::uint64_t mask_ = 0;
-  std::size_t float_count_ = 0;
-  std::unique_ptr<float[], AlignedDelete> floats_;
   BlockView view_;
 };
 

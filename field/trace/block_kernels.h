@@ -14,8 +14,8 @@
 namespace marrow {
 
 inline constexpr int lanes = 16;
-inline constexpr int floats_per_group = 5 * lanes;   ///< x[16] y[16] z[16] weight[16] radius[16]
-inline constexpr int far_monomials = 35;             ///< of degree <= 4
+inline constexpr int floats_per_group = 5 * lanes;    ///< x[16] y[16] z[16] weight[16] radius[16]
+inline constexpr int far_monomials = 35;              ///< of degree <= 4
 inline constexpr int far_floats = far_monomials * 4;  ///< (f, Gx, Gy, Gz) for each monomial
 
 /// One representation of the field in a block: f = sum w d^-m + polynomial, G = grad_S f likewise with w tau.
@@ -51,22 +51,43 @@ struct Root {
 inline constexpr float shortest_gap = 2e-5F;
 
 struct PointField {
-  float f, gradient[3];   ///< of f
-  float si_gradient[3];   ///< G
-  float hessian[6];       ///< of the potential: derivative of G; xx yy zz xy xz yz
-  float nearest;          ///< distance to the nearest source
+  float f, gradient[3];  ///< of f
+  float si_gradient[3];  ///< G
+  float hessian[6];      ///< of the potential: derivative of G; xx yy zz xy xz yz
+  float nearest;         ///< distance to the nearest source
+  float second, third;   ///< M2 and m M3 of tracing.md 3.1, for bounds of f and G nearby
 };
 
 /// 4 x 4 x 4 sub-cells of the block's cube [-1, 1]^3; bit x + 4 y + 16 z is set where the field may reach 1.
 inline constexpr int mask_size = 4;
 
+inline constexpr int far_moment_count = 80;  ///< see FarMoments
+
+inline constexpr int floats_per_piece_group = 11 * lanes;
+///< from xyz, along xyz, 1 / length^2 (0 for a point), mass, mass at the smallest radius, largest radius, length
+
+/// Bounds over the ball around one octant of a cube, in the cube's coordinates.
+struct OctantBounds {
+  float f_high = 0, gradient_high = 0;  ///< when nothing touches
+  float f_low = 0;
+  float weight = 0, weighted_radius = 0;  ///< fields of the pieces at the centre, and the same times their radii
+  bool touches = false;                   ///< a piece comes into the ball
+};
+
 struct BlockKernels {
-  /// The first t in [t0, t1] where the corrected field reaches 1; with `any`, any such t.
-  Root (*first_root)(const BlockView&, const LocalRay&, float t0, float t1, bool any);
+  struct Query {
+    float t0, t1;
+    bool any;           ///< any root will do
+    bool from_surface;  ///< the ray begins at t0, perhaps beside the surface
+  };
+  /// The first t in [t0, t1] where the corrected field reaches 1.
+  Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
   PointField (*point_field)(const BlockView&, const float point[3]);
-  /// V_lower(u) - v at a point: positive only where the field is certainly below 1.
-  float (*margin)(const BlockView&, const float point[3]);
   std::uint64_t (*mask)(const BlockView&);
+  /// Moments of groups of sources of one exponent about the origin, without the constants of FarMoments.
+  void (*far_moments)(const float* groups, int count, int exponent, float* f, float* potential);
+  /// Of the eight octants, from groups of pieces: curves, then points.
+  void (*octant_bounds)(const float* pieces, int curve_groups, int point_groups, int degree, OctantBounds*);
 };
 
 /// The kernels of an instruction set ("sse4", "avx2", "avx512"), or of the best one here for "";

@@ -4,19 +4,20 @@
 namespace marrow::avx2 {
 namespace {
 // clang-format off: in this order
-#include "field/trace/kernels/lanes.h"
-#include "field/trace/kernels/sums.h"
 #include "field/trace/kernels/far_on_ray.h"
 #include "field/trace/kernels/iso.h"
+#include "field/trace/kernels/lanes.h"
 #include "field/trace/kernels/march.h"
-#include "field/trace/kernels/search.h"
-#include "field/trace/kernels/points.h"
 #include "field/trace/kernels/mask.h"
+#include "field/trace/kernels/moments.h"
+#include "field/trace/kernels/points.h"
+#include "field/trace/kernels/search.h"
+#include "field/trace/kernels/sums.h"
 // clang-format on
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root, point_field, margin, mask};
+  static constexpr BlockKernels kernels{first_root, point_field, mask, far_moments, octant_bounds};
   return kernels;
 }
 

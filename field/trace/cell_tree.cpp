@@ -1,11 +1,11 @@
 #include "field/trace/cell_tree.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
+
+#include <tbb/parallel_for.h>
 
 #include "field/math/elementary.h"
 
@@ -20,18 +20,64 @@ namespace {
 
 enum class Side { Outside, Inside, Mixed };
 
-// Bounds of f and |grad_S f| over a ball, from the pieces near it.
-struct BallSums {
-  double f_high = 0, gradient_high = 0, f_low = 0;
-  double local_radius = 0;  // of the pieces, weighted by their fields at the centre
-  bool touches = false;     // a piece comes into the ball: no upper bound
+// Near pieces of one cube in its coordinates, as the kernel reads them: curves, then points.
+struct alignas(64) PieceGroup {
+  float from[3][lanes], along[3][lanes], inverse_length2[lanes], mass[lanes], low_mass[lanes], radius[lanes],
+      length[lanes];
+};
+static_assert(sizeof(PieceGroup) == floats_per_piece_group * sizeof(float));
+
+class PieceGroups {
+ public:
+  PieceGroups(std::span<const Piece> pieces, std::span<const PieceIndex> near, const Vec3d& center, double half,
+              int degree)
+      : center_(center), scale_(1 / half), degree_(degree) {
+    for (const bool points : {false, true}) {
+      int count = 0;
+      for (const PieceIndex i : near)
+        if (pieces[i].is_point() == points) add(pieces[i], count++);
+      (points ? point_groups_ : curve_groups_) = (count + lanes - 1) / lanes;
+    }
+  }
+  const float* data() const { return groups_.empty() ? nullptr : groups_.front().from[0]; }
+  int curve_groups() const { return curve_groups_; }
+  int point_groups() const { return point_groups_; }
+
+ private:
+  // Unused lanes stay at mass 0, far away.
+  void add(const Piece& p, int count) {
+    const int lane = count % lanes;
+    if (lane == 0) {
+      groups_.push_back({});
+      for (auto& axis : groups_.back().from) std::fill(axis, axis + lanes, 1e3F);
+    }
+    PieceGroup& g = groups_.back();
+    const Vec3d from = (p.from - center_) * scale_, along = (p.to - p.from) * scale_;
+    const int exponent = degree_ - (p.is_point() ? 1 : 0);
+    const double mass = p.mass * integer_power(scale_, exponent);
+    const double taper = std::min(p.radius_from, p.radius_to) / p.radius, length2 = length_squared(along);
+    for (std::size_t k = 0; k < 3; ++k) {
+      g.from[k][lane] = static_cast<float>(from[k]);
+      g.along[k][lane] = static_cast<float>(along[k]);
+    }
+    g.inverse_length2[lane] = static_cast<float>(length2 > 0 ? 1 / length2 : 0);
+    g.mass[lane] = static_cast<float>(mass);
+    g.low_mass[lane] = static_cast<float>(mass * integer_power(taper, degree_ - 1));
+    g.radius[lane] = static_cast<float>(p.radius * scale_);
+    g.length[lane] = static_cast<float>(p.length * scale_);
+  }
+
+  Vec3d center_;
+  double scale_;
+  int degree_, curve_groups_ = 0, point_groups_ = 0;
+  std::vector<PieceGroup> groups_;
 };
 
 class TreeBuilder {
  public:
-  TreeBuilder(std::span<const Piece> pieces, const NearFar& near_far, const IsoCurve& iso, int degree,
-              const CellTreeSettings& settings)
-      : pieces_(pieces), near_far_(near_far), iso_(iso), degree_(degree), settings_(settings) {}
+  TreeBuilder(std::span<const Piece> pieces, const NearFar& near_far, const IsoCurve& iso, const BlockKernels& kernels,
+              int degree, const CellTreeSettings& settings)
+      : pieces_(pieces), near_far_(near_far), iso_(iso), kernels_(kernels), degree_(degree), settings_(settings) {}
 
   CellTree::Branch root() const;
 
@@ -42,44 +88,18 @@ class TreeBuilder {
   Expansion expand(const CellTree::Branch&, int level) const;
 
  private:
-  BallSums sums(std::span<const PieceIndex>, const Vec3d& center, double radius) const;
-  Side side(const BallSums&, const FarField::Bounds&) const;
+  Side side(const OctantBounds&, const FarField::Bounds&) const;
   double influence() const;
 
   std::span<const Piece> pieces_;
   const NearFar& near_far_;
   const IsoCurve& iso_;
+  const BlockKernels& kernels_;
   int degree_;
   CellTreeSettings settings_;
 };
 
-// Every source at distance d from all points of the ball at least; sums of norms bound the norm of the sum.
-BallSums TreeBuilder::sums(std::span<const PieceIndex> near, const Vec3d& center, double radius) const {
-  BallSums s;
-  double weight_sum = 0, weighted_radius = 0;
-  for (const PieceIndex i : near) {
-    const Piece& p = pieces_[i];
-    const int m = degree_ - (p.is_point() ? 1 : 0);
-    const double d = distance(p, center), nearest = d - radius;
-    if (nearest > 1e-6 * radius) {
-      const double inverse = 1 / nearest, field = p.mass * integer_power(inverse, m);
-      s.f_high += field;
-      s.gradient_high += m * field * p.radius * inverse;
-    } else {
-      s.touches = true;
-    }
-    const double taper = std::min(p.radius_from, p.radius_to) / p.radius;
-    const double low = p.mass * integer_power(taper, degree_ - 1) / integer_power(d + p.length + radius, m);
-    s.f_low += low;
-    const double weight = p.mass / integer_power(std::max(d, 0.5 * p.radius), m);
-    weight_sum += weight;
-    weighted_radius += weight * p.radius;
-  }
-  if (weight_sum > 0) s.local_radius = weighted_radius / weight_sum;
-  return s;
-}
-
-Side TreeBuilder::side(const BallSums& near, const FarField::Bounds& far) const {
+Side TreeBuilder::side(const OctantBounds& near, const FarField::Bounds& far) const {
   const double f_far_low = std::max(0.0, far.f_center - far.f_variation);
   const double f_low = near.f_low + f_far_low;
   if (!near.touches) {
@@ -122,20 +142,24 @@ CellTree::Branch TreeBuilder::root() const {
 
 TreeBuilder::Expansion TreeBuilder::expand(const CellTree::Branch& parent, int level) const {
   Expansion out;
-  const double half = parent.half / 2, radius = half * std::sqrt(3.0) * (1 + 1e-9);
+  const PieceGroups pieces(pieces_, parent.near, parent.center, parent.half, degree_);
+  std::array<OctantBounds, 8> octants;
+  kernels_.octant_bounds(pieces.data(), pieces.curve_groups(), pieces.point_groups(), degree_, octants.data());
   const FarField::Bounds parent_far = parent.far.bounds();
+  const double half = parent.half / 2;
   for (int octant = 0; octant < 8; ++octant) {
-    const Vec3d center = octant_center(parent.center, parent.half, octant);
-    const BallSums near = sums(parent.near, center, radius);
+    const OctantBounds& near = octants[static_cast<std::size_t>(octant)];
     if (side(near, parent_far) != Side::Mixed) continue;
     FarField far = parent.far.of_child(octant);
     if (side(near, far.bounds()) != Side::Mixed) continue;
-    if (half <= settings_.cell_size * near.local_radius || level >= settings_.deepest_level) {
+    const double local_radius = parent.half * near.weighted_radius / near.weight;
+    if (half <= settings_.cell_size * local_radius || level >= settings_.deepest_level) {
       out.cells = static_cast<std::uint8_t>(out.cells | (1U << octant));
       continue;
     }
-    CellTree::Branch branch{.center = center, .half = half, .near = {}, .far = far};
-    branch.near = near_far_.split(pieces_, parent.near, center, half, branch.far);
+    CellTree::Branch branch{
+        .center = octant_center(parent.center, parent.half, octant), .half = half, .near = {}, .far = far};
+    branch.near = near_far_.split(pieces_, parent.near, branch.center, half, branch.far);
     out.branches.push_back(std::move(branch));
   }
   return out;
@@ -144,10 +168,10 @@ TreeBuilder::Expansion TreeBuilder::expand(const CellTree::Branch& parent, int l
 }  // namespace
 
 // Level by level: the branches of a level are expanded in parallel, and gathered in their order.
-CellTree::CellTree(std::span<const Piece> pieces, const NearFar& near_far, const IsoCurve& iso, int degree,
-                   const CellTreeSettings& settings) {
+CellTree::CellTree(std::span<const Piece> pieces, const NearFar& near_far, const IsoCurve& iso,
+                   const BlockKernels& kernels, int degree, const CellTreeSettings& settings) {
   if (pieces.empty()) return;
-  const TreeBuilder builder(pieces, near_far, iso, degree, settings);
+  const TreeBuilder builder(pieces, near_far, iso, kernels, degree, settings);
   std::vector<Branch> level{builder.root()};
   for (int depth = 1; !level.empty(); ++depth) {
     std::vector<TreeBuilder::Expansion> expansions(level.size());
@@ -157,23 +181,13 @@ CellTree::CellTree(std::span<const Piece> pieces, const NearFar& near_far, const
     for (std::size_t i = 0; i < level.size(); ++i) {
       for (int octant = 0; octant < 8; ++octant)
         if (expansions[i].cells >> octant & 1)
-          cells_.push_back({static_cast<std::uint32_t>(branches_.size()), static_cast<std::uint8_t>(octant)});
+          cells_.push_back({octant_center(level[i].center, level[i].half, octant), level[i].half / 2,
+                            static_cast<std::uint32_t>(branches_.size()), static_cast<std::uint8_t>(octant)});
       if (expansions[i].cells != 0) branches_.push_back(std::move(level[i]));
       std::move(expansions[i].branches.begin(), expansions[i].branches.end(), std::back_inserter(next));
     }
     level = std::move(next);
   }
-}
-
-Vec3d CellTree::center(const Cell& c) const {
-  const Branch& b = branches_[c.branch];
-  return octant_center(b.center, b.half, c.octant);
-}
-
-Box3 CellTree::box(const Cell& c) const {
-  const Vec3d p = center(c);
-  const double h = half(c);
-  return {p - Vec3d{h, h, h}, p + Vec3d{h, h, h}};
 }
 
 std::size_t CellTree::bytes() const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "field/math/box3.h"
+#include "field/trace/block_kernels.h"
 #include "field/trace/iso_curve.h"
 #include "field/trace/near_far.h"
 #include "field/trace/pieces.h"
@@ -16,7 +17,7 @@
 namespace marrow {
 
 struct CellTreeSettings {
-  double cell_size = 0.5;       ///< half side of a cell over the local radius, at most
+  double cell_size = 0.5;  ///< half side of a cell over the local radius, at most
   int deepest_level = 40;
 };
 
@@ -28,20 +29,24 @@ class CellTree {
     std::vector<PieceIndex> near;
     FarField far;
   };
-  /// One of the eight half-sized cubes of a branch.
+  /// One of the eight half-sized cubes of a branch. Its planes are exactly those of its neighbours.
   struct Cell {
+    Vec3d center;
+    double half;
     std::uint32_t branch;
     std::uint8_t octant;
+
+    Box3 box() const {
+      const Vec3d h{half, half, half};
+      return {center - h, center + h};
+    }
   };
 
-  CellTree(std::span<const Piece>, const NearFar&, const IsoCurve&, int degree, const CellTreeSettings&);
+  CellTree(std::span<const Piece>, const NearFar&, const IsoCurve&, const BlockKernels&, int degree,
+           const CellTreeSettings&);
 
   std::span<const Cell> cells() const { return cells_; }
   const Branch& branch(const Cell& c) const { return branches_[c.branch]; }
-  Vec3d center(const Cell&) const;
-  double half(const Cell& c) const { return branches_[c.branch].half / 2; }
-  /// Exactly the planes that neighbouring cells share.
-  Box3 box(const Cell&) const;
   std::size_t bytes() const;
 
  private:

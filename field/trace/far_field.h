@@ -29,23 +29,14 @@ std::size_t monomial_index(int a, int b, int c);
 
 using Polynomial = std::array<double, monomial_count>;
 
-/// Sums the Taylor coefficients of w |x - r|^-m over many sources r of one exponent m.
-/// The expansion is the Gegenbauer series, |x - r|^-m = sum_k C_k^(m/2)(cos) |x|^k |r|^-(m+k), whose
-/// terms are collected as moments of r and turned into coefficients once, in add_to().
-class FarMoments {
- public:
-  explicit FarMoments(int exponent);
-  /// A source at r with f-weight w and radius tau (F-weight w tau).
-  void add(const Vec3d& r, double weight, double radius);
-  void add_to(Polynomial& f, Polynomial& potential) const;
-  bool empty() const { return empty_; }
-
- private:
-  static constexpr std::size_t moment_count = 56 + 20 + 4;
-  int exponent_;
-  bool empty_ = true;
-  std::array<double, moment_count> f_{}, potential_{};
-};
+/// Turns moments of sources r about the origin into the Taylor coefficients of sum w |x - r|^-m.
+/// The expansion is the Gegenbauer series, |x - r|^-m = sum_k C_k^(m/2)(cos) |x|^k |r|^-(m+k). Its terms are
+/// (x.r)^k |x|^(2j) |r|^-(m+2k+2j) times a constant, so the moments needed are
+///   sum w r^(tensor k) |r|^-(m+2k+2j)   for j = 0, k = 0..5;  j = 1, k = 0..3;  j = 2, k = 0, 1
+/// (56 + 20 + 4 numbers), here without the constants, which are applied on the way.
+inline constexpr std::size_t moment_count = 56 + 20 + 4;
+using Moments = std::array<float, moment_count>;
+void add_moments(const Moments& f, const Moments& potential, int exponent, struct FarField&);
 
 struct FarField {
   Polynomial f{};  ///< its coefficients of degree 5 are 0

@@ -41,7 +41,7 @@ double rising_root(const Excess& excess, double low, double high) {
       at_high = at_mid;
       if (side == 1) at_low /= 2;
       side = 1;
-      if (at_mid == 0) break;
+      if (at_mid == 0) return mid;
     }
   }
   return 0.5 * (low + high);
@@ -103,6 +103,16 @@ IsoCurve::IsoCurve(const Correction& correction, double alpha) : two_sided_(alph
       above[j] = std::max(above[j], high);
     }
   }
+  // dV/du at the entries, from the partials: along the curve C_x dx + C_y dy = 0.
+  for (int i = 0; i < entry_count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const TurnedLine line{u_begin_ + i * step_, sin_, cos_};
+    const auto c = correction.partials(line.x(value[k]), line.y(value[k]));
+    const double slope = (cos_ * c.df - sin_ * c.dG) / (sin_ * c.df + cos_ * c.dG);
+    const std::size_t next = std::min<std::size_t>(k + 1, value.size() - 1);
+    const double chord = (value[next] - value[next - 1]) / step_;
+    slope_.push_back(static_cast<float>(std::isfinite(slope) ? slope : chord));
+  }
   constexpr double rounding = 4e-7;  // of float entries and of their interpolation in float, relative
   for (std::size_t i = 0; i < value.size(); ++i) {
     const double slack = rounding * (1 + std::fabs(value[i]));
@@ -141,12 +151,20 @@ double IsoCurve::upper(double u) const {
   return upper_[i] + (static_cast<double>(upper_[i + 1]) - upper_[i]) * fraction;
 }
 
+double IsoCurve::margin(double x, double y) const { return lower(y * sin_ - x * cos_) - (x * sin_ + y * cos_); }
+
+// The residual V(u) - v falls where C grows: -d/dx = sin + V' cos, -d/dy = cos - V' sin.
+IsoCurve::Slope IsoCurve::gradient(double x, double y) const {
+  const double at = std::clamp((y * sin_ - x * cos_ - u_begin_) / step_, 0.0, entry_count - 1.001);
+  const auto i = static_cast<std::size_t>(at);
+  const double fraction = at - static_cast<double>(i);
+  const double slope = slope_[i] + (static_cast<double>(slope_[i + 1]) - slope_[i]) * fraction;
+  return {sin_ + slope * cos_, cos_ - slope * sin_};
+}
+
 bool IsoCurve::outside(double x_low, double x_high, double y_high) const {
   if (!(x_high < 1e30) || !(y_high < 1e30)) return false;
-  const auto below = [&](double x) {
-    return x * sin_ + y_high * cos_ < lower(y_high * sin_ - x * cos_);
-  };
-  return below(x_high) && (!two_sided_ || below(x_low));
+  return margin(x_high, y_high) > 0 && (!two_sided_ || margin(x_low, y_high) > 0);
 }
 
 bool IsoCurve::inside(double x_low, double y_low) const {

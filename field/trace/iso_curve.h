@@ -33,8 +33,18 @@ class IsoCurve {
   bool outside(double x_low, double x_high, double y_high) const;
   /// Whether C > 1 for all x >= x_low, y >= y_low (only known for alpha >= 0; else false). Never wrongly true.
   bool inside(double x_low, double y_low) const;
+  /// V_lower(u) - v: positive only where C < 1 for all smaller x, y (alpha >= 0), or at x, y itself.
+  double margin(double x, double y) const;
+  /// The direction in which C grows fastest at a point of the curve, times a positive number: C_x and C_y in
+  /// proportion, from the exact partials at the entries of the table.
+  struct Slope {
+    double x, y;
+  };
+  Slope gradient(double x, double y) const;
   /// The f with C(f, 0) = 1.
   double critical_field() const { return critical_; }
+  /// Whether C falls in x somewhere (alpha < 0).
+  bool two_sided() const { return two_sided_; }
 
  private:
   double lower(double u) const;
@@ -42,7 +52,7 @@ class IsoCurve {
 
   double sin_, cos_, critical_, u_begin_, step_;
   bool two_sided_;
-  std::vector<float> value_, lower_, upper_;
+  std::vector<float> value_, lower_, upper_, slope_;
 };
 
 }  // namespace marrow

@@ -1,6 +1,7 @@
 #include "field/trace/mask_walk.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace marrow {
@@ -9,19 +10,17 @@ constexpr int cells_per_axis = 4;
 constexpr double cell_size = 2.0 / cells_per_axis;
 }  // namespace
 
-MaskWalk::MaskWalk(std::uint64_t mask, const double (&origin)[3], const double (&direction)[3], double t0, double t1)
+MaskWalk::MaskWalk(std::uint64_t mask, const Vec3d& origin, const Vec3d& direction, const Vec3d& inverse_direction,
+                   double t0, double t1)
     : mask_(mask), t_(t0), end_(t1) {
-  for (int i = 0; i < 3; ++i) {
-    const double at = origin[i] + direction[i] * t0;
-    cell_[i] = std::clamp(static_cast<int>((at + 1) / cell_size), 0, cells_per_axis - 1);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double at = (origin[i] + direction[i] * t0 + 1) * (1 / cell_size);
+    cell_[i] = std::clamp(static_cast<int>(at), 0, cells_per_axis - 1);
     step_[i] = direction[i] > 0 ? 1 : -1;
-    if (direction[i] == 0) {
-      delta_[i] = crossing_[i] = std::numeric_limits<double>::infinity();
-      continue;
-    }
+    delta_[i] = cell_size * std::fabs(inverse_direction[i]);
     const double plane = -1 + (cell_[i] + (step_[i] > 0 ? 1 : 0)) * cell_size;
-    crossing_[i] = (plane - origin[i]) / direction[i];
-    delta_[i] = cell_size / (direction[i] > 0 ? direction[i] : -direction[i]);
+    crossing_[i] =
+        direction[i] == 0 ? std::numeric_limits<double>::infinity() : (plane - origin[i]) * inverse_direction[i];
   }
 }
 

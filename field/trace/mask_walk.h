@@ -3,12 +3,16 @@
 
 #include <cstdint>
 
+#include "field/math/vec3.h"
+
 namespace marrow {
 
 /// Steps from sub-cell to sub-cell (Amanatides and Woo 1987) over [t0, t1], all in block coordinates.
 class MaskWalk {
  public:
-  MaskWalk(std::uint64_t mask, const double (&origin)[3], const double (&direction)[3], double t0, double t1);
+  /// `inverse_direction` is 1 / direction, infinite where that is 0.
+  MaskWalk(std::uint64_t mask, const Vec3d& origin, const Vec3d& direction, const Vec3d& inverse_direction, double t0,
+           double t1);
 
   struct Stretch {
     double begin, end;

@@ -4,10 +4,13 @@
 #include <cmath>
 
 #include "field/math/elementary.h"
+#include "field/trace/block_kernels.h"
+#include "field/trace/source_groups.h"
 
 namespace marrow {
 
-NearFar::NearFar(int degree, ErrorBudget budget) : degree_(degree), budget_(budget), quadrature_(degree) {
+NearFar::NearFar(int degree, ErrorBudget budget, const BlockKernels& kernels)
+    : degree_(degree), budget_(budget), kernels_(kernels), quadrature_(degree) {
   for (int i = 0; i <= table_size; ++i) {
     const double q = largest_ratio * i / table_size;
     curve_.push_back({taylor_remainder(degree, 4, q), taylor_remainder(degree + 1, 4, q)});
@@ -37,11 +40,37 @@ bool NearFar::is_far(const Piece& piece, double distance, double cube_radius, Fa
 NearFar::Rule NearFar::rule_for(const Piece& piece, double distance, double share) const {
   if (piece.is_point()) return {.nodes = 1, .error = {}};
   const double slope = std::fabs(piece.radius_to - piece.radius_from) / piece.length;
-  for (int m = 1; m <= max_gauss_nodes; ++m) {
-    const auto e = quadrature_.bound(m, piece.mass, piece.radius, slope, piece.length, distance);
-    if (e.field <= share * budget_.field && e.gradient <= share * budget_.gradient) return {m, e};
+  return quadrature_.smallest_rule(piece.mass, piece.radius, slope, piece.length, distance,
+                                   {share * budget_.field, share * budget_.gradient});
+}
+
+void add_nodes(const Piece& piece, int count, const Vec3d& center, double half, int degree, SourceGroups& out) {
+  const double scale = 1 / half;
+  if (piece.is_point()) {
+    const double radius = piece.radius * scale;
+    out.add((piece.from - center) * scale, integer_power(radius, degree - 1), radius);
+    return;
   }
-  return {};
+  const GaussNodes rule = gauss_legendre(count);
+  const double unit = piece.mass / integer_power(piece.radius, degree - 1) * scale;  // L / N in cube units
+  for (std::size_t k = 0; k < rule.positions.size(); ++k) {
+    const double s = rule.positions[k];
+    const double radius = (piece.radius_from + (piece.radius_to - piece.radius_from) * s) * scale;
+    out.add((lerp(piece.from, piece.to, s) - center) * scale,
+            rule.weights[k] * unit * integer_power(radius, degree - 1), radius);
+  }
+}
+
+// Sums in float: their error, a millionth of what they add, counts.
+void NearFar::fold(const SourceGroups& sources, int exponent, FarField& far) const {
+  if (sources.group_count() == 0) return;
+  Moments f, potential;
+  kernels_.far_moments(sources.data(), sources.group_count(), exponent, f.data(), potential.data());
+  const double before = far.f[0];
+  add_moments(f, potential, exponent, far);
+  constexpr double rounding = 1e-6;
+  far.f_error += rounding * (far.f[0] - before);
+  far.gradient_error += rounding * (far.f[0] - before);
 }
 
 std::vector<PieceIndex> NearFar::split(std::span<const Piece> pieces, std::span<const PieceIndex> candidates,
@@ -49,7 +78,8 @@ std::vector<PieceIndex> NearFar::split(std::span<const Piece> pieces, std::span<
   constexpr double quadrature_share = 0.25;
   const double cube_radius = half * std::sqrt(3.0);
   std::vector<PieceIndex> near;
-  FarMoments curves(degree_), points(degree_ - 1);
+  near.reserve(candidates.size());
+  SourceGroups curves, points;
   for (const PieceIndex i : candidates) {
     const Piece& piece = pieces[i];
     const double d = distance(piece, center);
@@ -57,25 +87,14 @@ std::vector<PieceIndex> NearFar::split(std::span<const Piece> pieces, std::span<
       near.push_back(i);
       continue;
     }
-    if (piece.is_point()) {
-      points.add((piece.from - center) / half, integer_power(piece.radius / half, degree_ - 1), piece.radius / half);
-      continue;
-    }
     // A far piece is at least a cube radius away and no longer than its radius: some rule always serves.
-    const Rule found = rule_for(piece, d - cube_radius, quadrature_share);
-    const GaussNodes rule = gauss_legendre(std::max(1, found.nodes));
-    far.f_error += found.error.field;
-    far.gradient_error += found.error.gradient;
-    const double unit = piece.mass / integer_power(piece.radius, degree_ - 1) / half;  // L / N in cube units
-    for (std::size_t k = 0; k < rule.positions.size(); ++k) {
-      const double s = rule.positions[k];
-      const double radius = (piece.radius_from + (piece.radius_to - piece.radius_from) * s) / half;
-      curves.add((lerp(piece.from, piece.to, s) - center) / half,
-                 rule.weights[k] * unit * integer_power(radius, degree_ - 1), radius);
-    }
+    const Rule rule = rule_for(piece, d - cube_radius, quadrature_share);
+    far.f_error += rule.error.field;
+    far.gradient_error += rule.error.gradient;
+    add_nodes(piece, std::max(1, rule.nodes), center, half, degree_, piece.is_point() ? points : curves);
   }
-  if (!curves.empty()) curves.add_to(far.f, far.potential);
-  if (!points.empty()) points.add_to(far.f, far.potential);
+  fold(curves, degree_, far);
+  fold(points, degree_ - 1, far);
   return near;
 }
 

@@ -11,6 +11,9 @@
 
 namespace marrow {
 
+struct BlockKernels;
+class SourceGroups;
+
 using PieceIndex = std::uint32_t;
 
 /// The share of the total error that one piece may cause in f and in |grad_S f|.
@@ -21,17 +24,13 @@ struct ErrorBudget {
 /// Splits at certified errors: the Taylor remainder B5 of tracing.md and the quadrature bound of GaussError.
 class NearFar {
  public:
-  NearFar(int degree, ErrorBudget);
+  NearFar(int degree, ErrorBudget, const BlockKernels&);
 
   /// Adds the far ones of `candidates` to `far` (in the coordinates of the cube) and returns the near ones, in order.
   std::vector<PieceIndex> split(std::span<const Piece>, std::span<const PieceIndex> candidates, const Vec3d& center,
                                 double half, FarField& far) const;
 
-  const ErrorBudget& budget() const { return budget_; }
-  struct Rule {
-    int nodes = 0;  ///< 0: no rule is good enough
-    GaussError::Bound error{};
-  };
+  using Rule = GaussError::Rule;
   /// The smallest rule whose error at this distance is within `share` of the budget.
   Rule rule_for(const Piece&, double distance, double share) const;
 
@@ -41,13 +40,18 @@ class NearFar {
   };
   Remainders remainders(bool point, double q) const;
   bool is_far(const Piece&, double distance, double cube_radius, FarField& far) const;
+  void fold(const SourceGroups&, int exponent, FarField&) const;
 
   static constexpr int table_size = 256;
   static constexpr double largest_ratio = 0.5;  ///< of cube radius to distance: beyond it nothing is far
   int degree_;
   ErrorBudget budget_;
+  const BlockKernels& kernels_;
   GaussError quadrature_;
   std::vector<Remainders> curve_, point_;  // psi at ratios i / table_size * largest_ratio
 };
+
+/// Emits the quadrature nodes of a piece in the coordinates of a cube.
+void add_nodes(const Piece&, int count, const Vec3d& center, double half, int degree, SourceGroups& out);
 
 }  // namespace marrow

@@ -16,10 +16,10 @@ struct BlendField;
 struct Piece {
   Vec3d from, to;
   double radius_from = 0, radius_to = 0;
-  double length = 0;     ///< 0 for a point
-  double mass = 0;       ///< f <= mass d^-exponent at distance d: L tau_max^(n-1) / N, or tau^(n-1) for a point
-  double radius = 0;     ///< the larger of the two
-  double inside_distance = 0;  ///< every p nearer than this to the piece is inside, by its own field alone
+  double length = 0;            ///< 0 for a point
+  double mass = 0;              ///< f <= mass d^-exponent at distance d: L tau_max^(n-1) / N, or tau^(n-1) for a point
+  double radius = 0;            ///< the larger of the two
+  double inside_distance = 0;   ///< every p nearer than this to the piece is inside, by its own field alone
   std::uint32_t primitive = 0;  ///< index into the blend's segments, or its points
 
   bool is_point() const { return length == 0; }

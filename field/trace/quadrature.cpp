@@ -36,15 +36,39 @@ GaussError::GaussError(int degree) : degree_(degree) {
   }
 }
 
+namespace {
+
+// What does not depend on the number of nodes.
+struct Scales {
+  double shrink, field, gradient;  // (length / distance)^2, and the factors of field_ and gradient_
+};
+
+Scales scales(int degree, double mass, double largest_radius, double slope, double length, double distance) {
+  const double ratio = length / distance, taper = 1 + slope * distance / largest_radius;
+  const double field = mass * integer_power(taper, degree - 1) / integer_power(distance, degree);
+  return {ratio * ratio, field, field * taper * largest_radius / distance};
+}
+
+}  // namespace
+
 GaussError::Bound GaussError::bound(int nodes, double mass, double largest_radius, double slope, double length,
                                     double distance) const {
-  const double ratio = length / distance;
-  const double shrink = integer_power(ratio * ratio, nodes);
-  const double taper = 1 + slope * distance / largest_radius;
-  const double taper_power = integer_power(taper, degree_ - 1);
-  const double base = mass * shrink * taper_power / integer_power(distance, degree_);
+  const Scales s = scales(degree_, mass, largest_radius, slope, length, distance);
+  const double shrink = integer_power(s.shrink, nodes);
   const auto m = static_cast<std::size_t>(nodes);
-  return {field_[m] * base, gradient_[m] * base * taper * largest_radius / distance};
+  return {field_[m] * s.field * shrink, gradient_[m] * s.gradient * shrink};
+}
+
+GaussError::Rule GaussError::smallest_rule(double mass, double largest_radius, double slope, double length,
+                                           double distance, Bound allowed) const {
+  Scales s = scales(degree_, mass, largest_radius, slope, length, distance);
+  for (int m = 1; m <= max_gauss_nodes; ++m) {
+    s.field *= s.shrink;
+    s.gradient *= s.shrink;
+    const Bound b{field_[static_cast<std::size_t>(m)] * s.field, gradient_[static_cast<std::size_t>(m)] * s.gradient};
+    if (b.field <= allowed.field && b.gradient <= allowed.gradient) return {m, b};
+  }
+  return {};
 }
 
 }  // namespace marrow

@@ -34,6 +34,13 @@ class GaussError {
   };
   /// `mass` = L tau_max^(n-1) / N, `largest_radius` = tau_max, `slope` = |d tau / ds|.
   Bound bound(int nodes, double mass, double largest_radius, double slope, double length, double distance) const;
+  struct Rule {
+    int nodes = 0;  ///< 0: even the largest rule is not good enough
+    Bound error{};
+  };
+  /// The smallest rule within `allowed`.
+  Rule smallest_rule(double mass, double largest_radius, double slope, double length, double distance,
+                     Bound allowed) const;
 
  private:
   int degree_;

@@ -1,13 +1,13 @@
 #include "renderer/geometry/build_surfaces.h"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <chrono>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <tbb/task_arena.h>
 
 #include "field/base/overloaded.h"
 #include "field/program/field_program.h"
@@ -84,8 +84,8 @@ Result<std::unique_ptr<Surfaces>> build_surfaces(const SceneDescription& scene, 
     builder.add_all();
     problems = std::move(builder.problems);
     if (problems.empty())
-      built = EmbreeSurfaces::make(std::move(builder.solids), std::move(builder.planes),
-                                   embree_config(options, threads));
+      built =
+          EmbreeSurfaces::make(std::move(builder.solids), std::move(builder.planes), embree_config(options, threads));
   });
   if (!problems.empty()) return problems;
   if (!*built) return built->why();

@@ -1,11 +1,11 @@
 #include "renderer/geometry/embree_surfaces.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include <embree3/rtcore.h>
 
 #include "renderer/geometry/mesh_solid.h"
 

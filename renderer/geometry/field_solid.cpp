@@ -25,9 +25,9 @@ Box3 FieldSolid::element_box(std::size_t element) const {
   if (in_world_) return local;
   Box3 box;
   for (int corner = 0; corner < 8; ++corner)
-    box.include(world_from_local_.point({corner & 1 ? local.upper.x : local.lower.x,
-                                         corner & 2 ? local.upper.y : local.lower.y,
-                                         corner & 4 ? local.upper.z : local.lower.z}));
+    box.include(
+        world_from_local_.point({corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
+                                 corner & 4 ? local.upper.z : local.lower.z}));
   return box;
 }
 

@@ -29,7 +29,7 @@ const Table<SunLight>& sun_table() {
       "sun", "A far disc of light.",
       {key<SunLight>("direction", &SunLight::direction, direction(), "from the scene toward the sun"),
        key<SunLight>("irradiance", &SunLight::irradiance, radiance(), "on a surface that faces it"),
-       key<SunLight>("angle", &SunLight::angle_deg, degrees({.min = 0, .max = 180, .min_open = true}),
+       key<SunLight>("angle", &SunLight::angle_deg, degrees({.min = 0, .max = 180}),
                      "diameter of the disc in degrees")});
   return table;
 }

@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 
 #include "renderer/scene/input_files.h"
-#include "scene_text.h"
+#include "tests/scene/scene_text.h"
 
 namespace marrow {
 namespace {

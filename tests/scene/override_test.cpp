@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "scene_text.h"
+#include "tests/scene/scene_text.h"
 
 namespace marrow {
 namespace {

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "scene_text.h"
+#include "tests/scene/scene_text.h"
 
 namespace marrow {
 namespace {

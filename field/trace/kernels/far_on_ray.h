@@ -1,27 +1,46 @@
 // The far field at a point and along a ray. Part of block_kernels_<set>.cpp.
 
-// Monomials of degree <= 4, in the order of far_field.h.
-template <class T>
-inline void fill_monomials(T x, T y, T z, T (&m)[far_monomials]) {
-  m[0] = T{} + 1.0F;
-  m[1] = x, m[2] = y, m[3] = z;
-  m[4] = x * x, m[5] = x * y, m[6] = x * z, m[7] = y * y, m[8] = y * z, m[9] = z * z;
-  for (int i = 0; i < 6; ++i) m[10 + i] = x * m[4 + i];
-  for (int i = 0; i < 3; ++i) m[16 + i] = y * m[7 + i];
-  m[19] = z * m[9];
-  for (int i = 0; i < 10; ++i) m[20 + i] = x * m[10 + i];
-  for (int i = 0; i < 4; ++i) m[30 + i] = y * m[16 + i];
-  m[34] = z * m[19];
+// Place of x^a y^b z^c among the monomials, as in far_field.h.
+constexpr int monomial_at(int a, int b, int c) {
+  const int d = a + b + c, rest = d - a;
+  return d * (d + 1) * (d + 2) / 6 + rest * (rest + 1) / 2 + rest - b;
+}
+
+// Horner's rule unrolled by the compiler: sum over c of the coefficients of x^A y^B z^c, c <= Degree - A - B, ...
+template <int A, int B, int C, class V, class X, class Coefficient>
+inline V nested_in_z(const X& z, const Coefficient& coefficient) {
+  const V here = coefficient(monomial_at(A, B, C));
+  if constexpr (A + B + C == 4) return here;
+  else return nested_in_z<A, B, C + 1, V>(z, coefficient) * z + here;
+}
+
+// ... then over b ...
+template <int A, int B, class V, class X, class Coefficient>
+inline V nested_in_y(const X& y, const X& z, const Coefficient& coefficient) {
+  const V here = nested_in_z<A, B, 0, V>(z, coefficient);
+  if constexpr (A + B == 4) return here;
+  else return nested_in_y<A, B + 1, V>(y, z, coefficient) * y + here;
+}
+
+// ... and over a: the polynomials of degree 4 at x, y, z; `coefficient(i)` gives that of monomial i for all lanes of V.
+template <class V, int A = 0, class X, class Coefficient>
+inline V nested_polynomial(const X& x, const X& y, const X& z, const Coefficient& coefficient) {
+  const V here = nested_in_y<A, 0, V>(y, z, coefficient);
+  if constexpr (A == 4) return here;
+  else return nested_polynomial<V, A + 1>(x, y, z, coefficient) * x + here;
 }
 
 // (f, Gx, Gy, Gz) of the far field at a point.
-inline V4 far_at(const FieldLevel& b, float x, float y, float z) {
-  float m[far_monomials];
-  fill_monomials<float>(x, y, z, m);
-  V4 sum[5] = {};  // five independent chains of additions
-  for (int i = 0; i < far_monomials; i += 5)
-    for (int k = 0; k < 5; ++k) sum[k] += load4(b.far + 4 * (i + k)) * m[i + k];
-  return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + sum[4];
+inline V4 far_at(const FieldLevel& level, float x, float y, float z) {
+  return nested_polynomial<V4>(x, y, z, [&](int i) { return load4(level.far + 4 * i); });
+}
+
+// The same at four points; each coordinate stands in four lanes for each point.
+inline V16 far_at_four(const FieldLevel& level, V16 x, V16 y, V16 z) {
+  return nested_polynomial<V16>(x, y, z, [&](int i) {
+    const V4 c = load4(level.far + 4 * i);
+    return __builtin_shufflevector(c, c, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3);
+  });
 }
 
 // The far field along a stretch of a ray: four polynomials of degree 4 in s = (t - middle) / half_length in [-1, 1].
@@ -39,15 +58,7 @@ struct FarOnRay {
     const float x = ray.origin[0] + ray.direction[0] * middle, y = ray.origin[1] + ray.direction[1] * middle,
                 z = ray.origin[2] + ray.direction[2] * middle;
     const V16 t = half * V16{-1, -1, -1, -1, -0.5F, -0.5F, -0.5F, -0.5F, 0.5F, 0.5F, 0.5F, 0.5F, 1, 1, 1, 1};
-    V16 m[far_monomials];
-    fill_monomials<V16>(x + ray.direction[0] * t, y + ray.direction[1] * t, z + ray.direction[2] * t, m);
-    V16 sum[5] = {};
-    for (int i = 0; i < far_monomials; i += 5)
-      for (int k = 0; k < 5; ++k) {
-        const V4 c4 = load4(block.far + 4 * (i + k));
-        sum[k] += __builtin_shufflevector(c4, c4, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3) * m[i + k];
-      }
-    const V16 total = ((sum[0] + sum[1]) + (sum[2] + sum[3])) + sum[4];
+    const V16 total = far_at_four(block, x + ray.direction[0] * t, y + ray.direction[1] * t, z + ray.direction[2] * t);
     V4 v[4];
     __builtin_memcpy(v, &total, sizeof total);
     interpolate(v, far_at(block, x, y, z));

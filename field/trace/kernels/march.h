@@ -30,9 +30,12 @@ struct Marcher {
     Sample p;
     p.t = t;
     p.s = {};
-    const Probe probe{splat(ray.origin[0] + ray.direction[0] * t), splat(ray.origin[1] + ray.direction[1] * t),
-                      splat(ray.origin[2] + ray.direction[2] * t), splat(ray.direction[0]),
-                      splat(ray.direction[1]), splat(ray.direction[2])};
+    const Probe probe{splat(ray.origin[0] + ray.direction[0] * t),
+                      splat(ray.origin[1] + ray.direction[1] * t),
+                      splat(ray.origin[2] + ray.direction[2] * t),
+                      splat(ray.direction[0]),
+                      splat(ray.direction[1]),
+                      splat(ray.direction[2])};
     V16 nearest{};
     for_each_list(level, block.degree, RaySummer{probe, nearest, p.s});
     far.add(t, p.s);
@@ -119,7 +122,10 @@ struct Marcher {
     const float b = -sign * p.slope;
     const float model = 2 * p.residual / (b + root_of(max_of(0, b * b + 4 * max_of(c, 0) * p.residual)) + 1e-20F);
     if (model > 0.8F * most && outside_until(p, sign * most)) return most;
-    float h = min_of(0.85F * model, 0.7F * most);
+    // Short steps end where the model does; long ones before, because their remainder grows faster than the model.
+    float h = min_of(0.985F * model, 0.7F * most);
+    if (h > 0 && h < 0.01F * p.distance && outside_until(p, sign * h)) return h;
+    h *= 0.86F;
     for (int i = 0; i < 5; ++i, h *= 0.5F)
       if (h > 0 && outside_until(p, sign * h)) return h;
     return 0;

@@ -1,9 +1,9 @@
 // Which sub-cells of a block may hold surface, by bounds over balls. Part of block_kernels_<set>.cpp.
 
 struct BallBounds {
-  float x_up = 0;       // of f
-  float g[3] = {};      // G at the centre
-  float deviation = 0;  // of G in the ball
+  float x_up = 0;        // of f
+  float g[3] = {};       // G at the centre
+  float deviation = 0;   // of G in the ball
   bool touches = false;  // a source comes into the ball
 };
 

@@ -1,16 +1,4 @@
-// The field at single points. Part of block_kernels_<set>.cpp.
-
-float margin(const BlockView& block, const float p[3]) {
-  const Probe probe{splat(p[0]), splat(p[1]), splat(p[2]), splat(1), splat(0), splat(0)};
-  RaySums s{};
-  V16 nearest{};
-  for_each_list(block.fine, block.degree, RaySummer{probe, nearest, s});
-  const V4 far = far_at(block.fine, p[0], p[1], p[2]);
-  float yy = 0;
-  for (int i = 0; i < 3; ++i) yy += (s.g[i] + far[i + 1]) * (s.g[i] + far[i + 1]);
-  const float value = margin_at(block.iso, (s.f + far[0]) * (1 + rounding), root_of(yy) * (1 + rounding));
-  return value == value ? value : -1;
-}
+// The field at a point, with all derivatives that its normal needs. Part of block_kernels_<set>.cpp.
 
 // Derivatives of the far polynomials by rows of monomials: d/dx of x^a y^b z^c is a x^(a-1) y^b z^c, and so on.
 inline void far_derivatives(const FieldLevel& level, const float p[3], V4 (&d)[3]) {
@@ -43,6 +31,8 @@ PointField point_field(const BlockView& block, const float p[3]) {
   far_derivatives(block.fine, p, d);
   PointField out;
   out.f = s.f + far[0];
+  out.second = s.second;
+  out.third = s.third;
   out.nearest = 1 / root_of(max_of(largest_lane(nearest), 1e-12F));
   for (int i = 0; i < 3; ++i) {
     out.gradient[i] = s.df[i] + d[i][0];

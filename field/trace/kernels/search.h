@@ -61,20 +61,34 @@ struct Search {
     if (have_last && last.slope < 0) {
       const float newton = last.t - last.residual / last.slope;
       if (newton > front && newton < right) {
-        root = bracketed() && inside.slope < 0 ? hermite_root() : newton;
+        root = bracketed() && inside.slope < 0 ? hermite_root(last.residual, inside.residual) : newton;
         back = min_of(0.05F * (root - last.t), 2e-4F * last.distance);
       }
     } else if (bracketed() && inside.slope < 0) {
       const float newton = inside.t - inside.residual / inside.slope;
-      if (newton > front && newton < right) root = newton;
+      if (newton > front && newton < right) {
+        root = newton;
+        back = 2e-4F * inside.distance;
+      }
     }
     const float inset = 0.02F * gap;
     return min_of(max_of(root - back, front + min_of(inset, back + 1e-4F)), right - inset);
   }
 
-  // The root of the cubic that meets residual and slope at both ends of the bracket.
-  float hermite_root() const {
-    const float h = inside.t - last.t, p0 = last.residual, p1 = inside.residual;
+  // Where the field as summed, without the level's errors, reaches 1; from the samples at hand.
+  float nominal_root() const {
+    if (have_last && have_inside && last.slope < 0 && inside.slope < 0 && last.nominal > 0 && inside.nominal < 0)
+      return hermite_root(last.nominal, inside.nominal);
+    const bool use_last =
+        have_last && last.slope < 0 && !(have_inside && abs_of(inside.nominal) < abs_of(last.nominal));
+    if (use_last) return last.t - last.nominal / last.slope;
+    if (have_inside && inside.slope < 0) return inside.t - inside.nominal / inside.slope;
+    return 0.5F * (front + gap_end());
+  }
+
+  // The root of the cubic that meets values p0, p1 and slopes at both ends of the bracket.
+  float hermite_root(float p0, float p1) const {
+    const float h = inside.t - last.t;
     const float d0 = last.slope * h, d1 = inside.slope * h;
     float u = p0 / (p0 - p1);
     for (int k = 0; k < 3; ++k) {
@@ -89,13 +103,13 @@ struct Search {
   }
 
   // Newton's root from the last outside sample, when it is proved: the certificate reaches it to within the
-  // shortest gap, the field is above 1 just behind it, and the step is so short that Newton's error, its square,
-  // is below 1e-6 of the distance to the skeleton.
+  // shortest gap, the field is above 1 just behind it, and the step is so short that Newton's error, some three
+  // times its square over the distance to the skeleton, is below 2e-6 of that distance.
   bool pinned(float& root) const {
     if (!have_last || !(last.slope < 0)) return false;
     const float step = -last.residual / last.slope, tolerance = shortest_gap * last.distance;
     root = last.t + step;
-    if (!(step < 6e-4F * last.distance) || !(root - front < tolerance) || !(root <= end)) return false;
+    if (!(step < 8e-4F * last.distance) || !(root - front < tolerance) || !(root <= end)) return false;
     return (bracketed() && inside.t - root < tolerance) || march.inside_at(last, step + tolerance);
   }
 
@@ -114,32 +128,29 @@ struct Search {
 
 inline constexpr int most_samples = 200;
 
-// The coarse level first: it finds where the surface may be, at a fraction of the cost. Returns false for a miss;
-// else `s.front` is certified and `guess` is near the root.
-inline bool coarse_search(Search& s, float t0, float t1, bool any, bool& surely_inside, float& guess) {
-  float next = 0.5F * (t0 + t1);
+// The coarse level: it finds where the surface may be, at a fraction of the cost. When it returns Near, the front is
+// certified and `guess` is close to the root.
+enum class Approach { Missed, SurelyInside, Near };
+
+inline Approach approach(Search& s, bool any, float& guess) {
+  float next = 0.5F * (s.front + s.end);
   for (int i = 0; i < most_samples; ++i) {
     const Sample p = s.march.sample(next);
     s.record(p);
-    if (s.missed()) return false;
-    if (any && p.residual <= 0 && s.march.inside_at(p, 0)) {
-      surely_inside = true;
-      return true;
-    }
+    if (s.missed()) return Approach::Missed;
+    if (any && p.residual <= 0 && s.march.inside_at(p, 0)) return Approach::SurelyInside;
     next = s.guess();
     const float gap = s.gap_end() - s.front;
-    if (s.bracketed() && (gap < 0.05F * p.distance || (s.have_last && next - s.front < 0.02F * p.distance))) break;
+    if (s.bracketed() && (gap < 0.1F * p.distance || (s.have_last && next - s.front < 0.05F * p.distance))) break;
     if (gap < 1e-3F * p.distance) break;
   }
-  guess = s.guess();
-  if (s.have_last && s.last.slope < 0) {  // from the root of the raised field to that of the field itself
-    const float shift = (s.last.residual - s.last.nominal) / s.last.slope;
-    if (guess + shift < s.end) guess += shift;
-  }
-  return true;
+  // A little before the root, so that one fine certificate can reach it.
+  guess = s.nominal_root() - 3e-4F * (s.have_inside ? s.inside.distance : s.last.distance);
+  return Approach::Near;
 }
 
-inline Root fine_search(Search& s, float guess, bool any) {
+// The fine level: it decides.
+inline Root decide(Search& s, float guess, bool any) {
   Root root;
   for (int i = 0; i < most_samples; ++i) {
     const Sample p = s.march.sample(guess);
@@ -165,23 +176,32 @@ inline Root fine_search(Search& s, float guess, bool any) {
   return root;
 }
 
-Root first_root(const BlockView& block, const LocalRay& ray, float t0, float t1, bool any) {
-  Marcher coarse(block, block.coarse, ray, t0, t1);
-  Search approach(coarse, t0, t1);
-  bool surely_inside = false;
-  float guess = t0;
+Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
+  float front = query.t0;
   Root root;
-  if (coarse_search(approach, t0, t1, any, surely_inside, guess)) {
-    if (surely_inside) {
-      root.hit = true;
-      root.t = approach.inside.t;
-    } else {
-      Marcher fine(block, block.fine, ray, approach.front, t1);
-      Search search(fine, approach.front, t1);
-      root = fine_search(search, max_of(guess, approach.front), any);
-      root.evaluations = fine.evaluations;
-    }
+  if (query.from_surface) {  // too near for the coarse level; one fine certificate leads away
+    Marcher march(block, block.fine, ray, query.t0, query.t1);
+    Search start(march, query.t0, query.t1);
+    start.record(march.sample(query.t0));
+    root.evaluations = march.evaluations;
+    if (start.missed()) return root;
+    front = start.front;
   }
+  Marcher coarse(block, block.coarse, ray, front, query.t1);
+  Search far_off(coarse, front, query.t1);
+  float guess = front;
+  const Approach approached = approach(far_off, query.any, guess);
   root.evaluations += coarse.evaluations;
+  if (approached == Approach::Missed) return root;
+  if (approached == Approach::SurelyInside) {
+    root.hit = true;
+    root.t = far_off.inside.t;
+    return root;
+  }
+  Marcher fine(block, block.fine, ray, far_off.front, query.t1);
+  Search close(fine, far_off.front, query.t1);
+  const int before = root.evaluations;
+  root = decide(close, min_of(max_of(guess, far_off.front), query.t1), query.any);
+  root.evaluations = before + fine.evaluations;
   return root;
 }

@@ -49,9 +49,9 @@ inline void add_sums(const float* group, int groups, int exponent, const Probe& 
   }
 }
 
-// f, grad f, G and the derivative of G in all directions (xx yy zz xy xz yz).
+// f, grad f, G and the derivative of G in all directions (xx yy zz xy xz yz); second and third as in RaySums.
 struct FullSums {
-  float f, df[3], g[3], h[6];
+  float f, df[3], g[3], h[6], second, third;
 };
 
 template <int Exponent>
@@ -71,6 +71,8 @@ inline void add_full_sums(const float* group, int groups, int exponent, const fl
     a[5] += k2 * dx;
     a[6] += k2 * dy;
     a[7] += k2 * dz;
+    a[8] += w2;
+    a[9] += k4;
     b[0] += kx * dx;
     b[1] += ky * dy;
     b[2] += kz * dz;
@@ -84,6 +86,8 @@ inline void add_full_sums(const float* group, int groups, int exponent, const fl
   sum_lanes(b, t);
   const float m = static_cast<float>(Exponent > 0 ? Exponent : exponent);
   out.f += s[0];
+  out.second += s[8];
+  out.third += m * root_of(s[4] * s[9]);
   for (int i = 0; i < 3; ++i) {
     out.df[i] -= m * s[1 + i];
     out.g[i] -= m * s[5 + i];
@@ -100,16 +104,30 @@ inline const float* point_sources(const FieldLevel& l) {
 template <class Sums>
 inline void for_each_list(const FieldLevel& l, int degree, const Sums& sums) {
   if (l.curve_groups > 0) switch (degree) {
-      case 3: sums.template add<3>(l.sources, l.curve_groups, 3); break;
-      case 4: sums.template add<4>(l.sources, l.curve_groups, 4); break;
-      case 5: sums.template add<5>(l.sources, l.curve_groups, 5); break;
-      default: sums.template add<0>(l.sources, l.curve_groups, degree);
+      case 3:
+        sums.template add<3>(l.sources, l.curve_groups, 3);
+        break;
+      case 4:
+        sums.template add<4>(l.sources, l.curve_groups, 4);
+        break;
+      case 5:
+        sums.template add<5>(l.sources, l.curve_groups, 5);
+        break;
+      default:
+        sums.template add<0>(l.sources, l.curve_groups, degree);
     }
   if (l.point_groups > 0) switch (degree) {
-      case 3: sums.template add<2>(point_sources(l), l.point_groups, 2); break;
-      case 4: sums.template add<3>(point_sources(l), l.point_groups, 3); break;
-      case 5: sums.template add<4>(point_sources(l), l.point_groups, 4); break;
-      default: sums.template add<0>(point_sources(l), l.point_groups, degree - 1);
+      case 3:
+        sums.template add<2>(point_sources(l), l.point_groups, 2);
+        break;
+      case 4:
+        sums.template add<3>(point_sources(l), l.point_groups, 3);
+        break;
+      case 5:
+        sums.template add<4>(point_sources(l), l.point_groups, 4);
+        break;
+      default:
+        sums.template add<0>(point_sources(l), l.point_groups, degree - 1);
     }
 }
 

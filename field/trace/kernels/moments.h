@@ -1,0 +1,105 @@
+// Moments of far sources (far_field.h), and bounds of the field over the octants of a cube. Part of
+// block_kernels_<set>.cpp.
+
+// All monomials of degree <= 5, each a smaller one times a coordinate, in the order of far_field.h.
+inline void fill_monomials(V16 x, V16 y, V16 z, V16 (&m)[56]) {
+  m[0] = splat(1);
+  m[1] = x, m[2] = y, m[3] = z;
+  m[4] = x * x, m[5] = x * y, m[6] = x * z, m[7] = y * y, m[8] = y * z, m[9] = z * z;
+  for (int i = 0; i < 6; ++i) m[10 + i] = x * m[4 + i];
+  for (int i = 0; i < 3; ++i) m[16 + i] = y * m[7 + i];
+  m[19] = z * m[9];
+  for (int i = 0; i < 10; ++i) m[20 + i] = x * m[10 + i];
+  for (int i = 0; i < 4; ++i) m[30 + i] = y * m[16 + i];
+  m[34] = z * m[19];
+  for (int i = 0; i < 15; ++i) m[35 + i] = x * m[20 + i];
+  for (int i = 0; i < 5; ++i) m[50 + i] = y * m[30 + i];
+  m[55] = z * m[34];
+}
+
+// For j = 0, 1, 2 the sums of w r^k |r|^-(m + 2 (k + j)) over k = 0..5, 0..3, 0..1, without their constant factors.
+template <int J, int Degree>
+inline void accumulate_tensor(const V16 (&power)[56], const V16 (&inverse)[6], V16 tau, V16* f, V16* potential) {
+  constexpr int begin[] = {0, 1, 4, 10, 20, 35, 56};
+  for (int k = 0; k <= Degree; ++k)
+    for (int i = begin[k]; i < begin[k + 1]; ++i) {
+      const V16 v = inverse[k + J] * power[i];
+      f[i] += v;
+      potential[i] += v * tau;
+    }
+}
+
+void far_moments(const float* group, int groups, int exponent, float* f_out, float* potential_out) {
+  V16 f[far_moment_count] = {}, potential[far_moment_count] = {};
+  for (int k = 0; k < groups; ++k, group += floats_per_group) {
+    const V16 x = load(group), y = load(group + 16), z = load(group + 32), tau = load(group + 64);
+    V16 power[56], inverse[6];
+    fill_monomials(x, y, z, power);
+    const V16 inv = 1.0F / (x * x + y * y + z * z);
+    inverse[0] = load(group + 48) * inverse_power<0>(inv, exponent);
+    for (int i = 1; i < 6; ++i) inverse[i] = inverse[i - 1] * inv;
+    accumulate_tensor<0, 5>(power, inverse, tau, f, potential);
+    accumulate_tensor<1, 3>(power, inverse, tau, f + 56, potential + 56);
+    accumulate_tensor<2, 1>(power, inverse, tau, f + 76, potential + 76);
+  }
+  static_assert(far_moment_count == 80);
+  for (int i = 0; i < far_moment_count; i += 8) {  // eight sums of each kind at a time
+    V16 a[12] = {};
+    float s[16];
+    for (int k = 0; k < 8; ++k) a[k] = f[i + k];
+    sum_lanes(a, s);
+    for (int k = 0; k < 8; ++k) f_out[i + k] = s[k];
+    for (int k = 0; k < 8; ++k) a[k] = potential[i + k];
+    sum_lanes(a, s);
+    for (int k = 0; k < 8; ++k) potential_out[i + k] = s[k];
+  }
+}
+
+// One kind of pieces (one exponent) against one ball. Distances are lowered and raised by what rounding can do to
+// numbers of their size: coordinates and distances below 100 have errors below 1e-5.
+template <int Exponent>
+inline void add_octant(const float* group, int groups, int exponent, const float (&c)[3], float radius,
+                       OctantBounds& out) {
+  V16 a[12] = {}, touching{};
+  for (int k = 0; k < groups; ++k, group += floats_per_piece_group) {
+    const V16 wx = c[0] - load(group), wy = c[1] - load(group + 16), wz = c[2] - load(group + 32);
+    const V16 ax = load(group + 48), ay = load(group + 64), az = load(group + 80);
+    const V16 along = (wx * ax + wy * ay + wz * az) * load(group + 96);  // 1 / length^2
+    const V16 t = along < 0.0F ? V16{} : along > 1.0F ? splat(1) : along;
+    const V16 dx = wx - ax * t, dy = wy - ay * t, dz = wz - az * t;
+    const V16 mass = load(group + 112), low_mass = load(group + 128), tau = load(group + 144), size = load(group + 160);
+    const V16 d = root_of(dx * dx + dy * dy + dz * dz), slack = 2e-6F * (1.0F + d);
+    const V16 nearest = d - (radius + slack), safe = larger(nearest, splat(1e-4F));
+    const V16 inverse = 1.0F / safe, field = mass * inverse_power<Exponent>(inverse * inverse, exponent);
+    const V16 far_end = 1.0F / (d + size + radius + slack);
+    const V16 softened = 1.0F / larger(d, 0.5F * tau);
+    const V16 weight = mass * inverse_power<Exponent>(softened * softened, exponent);
+    a[0] += field;
+    a[1] += field * tau * inverse;
+    a[2] += low_mass * inverse_power<Exponent>(far_end * far_end, exponent);
+    a[3] += weight;
+    a[4] += weight * tau;
+    touching = larger(touching, mass > 0.0F ? 1e-4F - nearest : V16{} - 1.0F);
+  }
+  float s[16];
+  sum_lanes(a, s);
+  out.f_high += s[0] * (1 + rounding);
+  out.gradient_high += static_cast<float>(exponent) * s[1] * (1 + rounding);
+  out.f_low += s[2] * (1 - rounding);
+  out.weight += s[3];
+  out.weighted_radius += s[4];
+  if (largest_lane(touching) > 0) out.touches = true;
+}
+
+void octant_bounds(const float* pieces, int curve_groups, int point_groups, int degree, OctantBounds* out) {
+  constexpr float radius = 0.5F * 1.7320509F;  // of a half-sized cube, rounded up
+  const float* points = pieces + static_cast<long>(curve_groups) * floats_per_piece_group;
+  for (int octant = 0; octant < 8; ++octant) {
+    float c[3];
+    for (int i = 0; i < 3; ++i) c[i] = octant >> i & 1 ? 0.5F : -0.5F;
+    out[octant] = {};
+    if (degree == 4) add_octant<4>(pieces, curve_groups, 4, c, radius, out[octant]);
+    else add_octant<0>(pieces, curve_groups, degree, c, radius, out[octant]);
+    if (point_groups > 0) add_octant<0>(points, point_groups, degree - 1, c, radius, out[octant]);
+  }
+}
