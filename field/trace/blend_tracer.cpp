@@ -114,10 +114,11 @@ const Block& BlendTracer::block(std::size_t cell) const {
   return *expected;
 }
 
-std::optional<CellHit> BlendTracer::first_hit(std::size_t cell, const Ray& ray, bool any) const {
+std::optional<CellHit> BlendTracer::first_hit(std::size_t cell, const Ray& ray, bool any, CellLog& log) const {
   const Vec3d& direction = ray.direction;
   const Vec3d inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
   auto [enter, exit] = clip(cell_box(cell), ray, inverse);
+  log.enter = enter;
   if (any) exit = std::min(exit, ray.t_max);
   if (!(enter < exit)) return {};
   const Block& b = block(cell);
@@ -132,18 +133,18 @@ std::optional<CellHit> BlendTracer::first_hit(std::size_t cell, const Ray& ray, 
   }
   const double begin = (enter - t_near) * scale;
   MaskWalk walk(b.mask(), start, direction, inverse, begin, (exit - t_near) * scale);
-  CellHit hit;
+  const auto world_t = [&](float t) { return t_near + static_cast<double>(t) * b.half(); };
   for (MaskWalk::Stretch s; walk.next(s);) {
     const Root root = state_->kernels.first_root(b.view(), local,
                                                  {.t0 = static_cast<float>(s.begin),
                                                   .t1 = static_cast<float>(s.end),
                                                   .any = any,
                                                   .from_surface = s.begin <= begin && enter <= ray.t_min});
-    hit.evaluations += static_cast<std::uint32_t>(root.evaluations);
-    hit.certified = hit.certified && root.certified;
+    log.evaluations += static_cast<std::uint32_t>(root.evaluations);
+    log.undecided = std::min(log.undecided, world_t(root.undecided));
     if (!root.hit) continue;
-    hit.t = std::clamp(t_near + static_cast<double>(root.t) * b.half(), enter, exit);
-    return hit.t <= ray.t_max ? std::optional(hit) : std::nullopt;
+    const double t = std::clamp(world_t(root.t), enter, exit);
+    return t <= ray.t_max ? std::optional(CellHit{t}) : std::nullopt;
   }
   return {};
 }

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,8 +29,13 @@ struct TraceOptions {
 
 struct CellHit {
   double t = 0;
-  std::uint32_t evaluations = 0;
-  bool certified = true;
+};
+
+/// What a ray did in a cell, hit or not.
+struct CellLog {
+  double enter = 0;                                            ///< t at which the ray came into the cell
+  double undecided = std::numeric_limits<double>::infinity();  ///< t of the first gap too short to decide
+  std::uint32_t evaluations = 0;                               ///< of the field
 };
 
 struct SurfacePoint {
@@ -54,7 +60,7 @@ class BlendTracer {
 
   /// The first root inside a cell with t in [ray.t_min, ray.t_max]; t does not depend on ray.t_max.
   /// With `any`, any root.
-  std::optional<CellHit> first_hit(std::size_t cell, const Ray&, bool any) const;
+  std::optional<CellHit> first_hit(std::size_t cell, const Ray&, bool any, CellLog&) const;
   /// Normal and starting point at a hit in this cell.
   SurfacePoint surface_at(std::size_t cell, const Vec3d& position) const;
 

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 #include "field/trace/iso_curve.h"
@@ -43,7 +44,7 @@ struct LocalRay {
 struct Root {
   float t = 0;
   bool hit = false;
-  bool certified = true;  ///< false: a gap too short to decide was skipped
+  float undecided = std::numeric_limits<float>::infinity();  ///< where the first gap too short to decide was skipped
   int evaluations = 0;
 };
 

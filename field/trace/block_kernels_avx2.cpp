@@ -3,16 +3,17 @@
 
 namespace marrow::avx2 {
 namespace {
-// clang-format off: in this order
+// In this order: each builds on those before.
+// clang-format off
+#include "field/trace/kernels/lanes.h"
+#include "field/trace/kernels/sums.h"
 #include "field/trace/kernels/far_on_ray.h"
 #include "field/trace/kernels/iso.h"
-#include "field/trace/kernels/lanes.h"
 #include "field/trace/kernels/march.h"
+#include "field/trace/kernels/search.h"
+#include "field/trace/kernels/points.h"
 #include "field/trace/kernels/mask.h"
 #include "field/trace/kernels/moments.h"
-#include "field/trace/kernels/points.h"
-#include "field/trace/kernels/search.h"
-#include "field/trace/kernels/sums.h"
 // clang-format on
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include <embree3/rtcore.h>
 
@@ -24,8 +25,16 @@ struct Query : RTCIntersectContext {
   double best = std::numeric_limits<double>::infinity();
   const Solid* solid = nullptr;
   unsigned geometry = RTC_INVALID_GEOMETRY_ID, element = 0;
-  std::uint32_t evaluations = 0;
-  bool certified = true;
+  double undecided = std::numeric_limits<double>::infinity();
+  std::vector<ElementLog>* visits = nullptr;  // of a thread, reused from ray to ray
+
+  // Elements that begin behind the hit are visited or not as the traversal happens to go: they do not count.
+  RayRecord record(double hit_t) const {
+    RayRecord r{.evaluations = 0, .certified = !(undecided < hit_t)};
+    for (const ElementLog& v : *visits)
+      if (v.enter <= hit_t) r.evaluations += v.evaluations;
+    return r;
+  }
 };
 
 // Embree's t of a hit, never before the hit itself: a box that holds a nearer one must not be skipped.
@@ -50,18 +59,18 @@ void intersect_callback(const RTCIntersectFunctionNArguments* a) {
   if (a->valid[0] == 0) return;
   auto& q = *static_cast<Query*>(a->context);
   const Solid& solid = *placed(a->geometryUserPtr).solid;
-  const auto hit = solid.hit(a->primID, q.ray, false);
-  if (!hit) return;
-  q.evaluations += hit->evaluations;
-  if (hit->t > q.best) return;
-  if (hit->t == q.best && std::pair(a->geomID, a->primID) > std::pair(q.geometry, q.element)) return;
-  q.best = hit->t;
+  ElementLog log;
+  const auto t = solid.hit(a->primID, q.ray, false, log);
+  if (log.evaluations > 0) q.visits->push_back(log);
+  q.undecided = std::min(q.undecided, log.undecided);
+  if (!t || *t > q.best) return;
+  if (*t == q.best && std::pair(a->geomID, a->primID) > std::pair(q.geometry, q.element)) return;
+  q.best = *t;
   q.solid = &solid;
   q.geometry = a->geomID;
   q.element = a->primID;
-  q.certified = hit->certified;
   auto* rayhit = reinterpret_cast<RTCRayHit*>(a->rayhit);
-  rayhit->ray.tfar = embree_t(q, hit->t);
+  rayhit->ray.tfar = embree_t(q, *t);
   rayhit->hit.geomID = a->geomID;
   rayhit->hit.primID = a->primID;
 }
@@ -70,7 +79,8 @@ void occluded_callback(const RTCOccludedFunctionNArguments* a) {
   if (a->valid[0] == 0) return;
   const auto& q = *static_cast<const Query*>(a->context);
   const Solid& solid = *placed(a->geometryUserPtr).solid;
-  if (solid.hit(a->primID, q.ray, true))
+  ElementLog log;
+  if (solid.hit(a->primID, q.ray, true, log))
     reinterpret_cast<RTCRay*>(a->ray)->tfar = -std::numeric_limits<float>::infinity();
 }
 
@@ -156,10 +166,13 @@ const PlacedPlane* EmbreeSurfaces::nearest_plane(const Ray& ray, double& t) cons
   return best;
 }
 
-std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray) const {
+std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray, RayRecord& record) const {
+  thread_local std::vector<ElementLog> visits;
+  visits.clear();
   double plane_t = std::numeric_limits<double>::infinity();
   const PlacedPlane* plane = nearest_plane(ray, plane_t);
   Query q(ray);
+  q.visits = &visits;
   double t_end = 0;
   if (clip(padded_bounds_, ray, q.t_start, t_end) && q.t_start < plane_t) {
     q.ray.t_max = std::min(ray.t_max, plane_t);
@@ -169,13 +182,12 @@ std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray) const {
     rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_.get(), &q, &rayhit);
   }
+  record = q.record(std::min(q.best, plane_t));
   if (q.solid == nullptr && plane == nullptr) return {};
   SurfaceHit hit;
-  hit.evaluations = q.evaluations;
   if (q.solid != nullptr) {
     hit.t = q.best;
     hit.position = ray.at(q.best);
-    hit.certified = q.certified;
     hit.object = solids_[q.geometry].object;
     q.solid->describe(q.element, ray, hit);
     return hit;

@@ -34,7 +34,8 @@ class EmbreeSurfaces final : public Surfaces {
   static Result<std::unique_ptr<EmbreeSurfaces>> make(std::vector<PlacedSolid>, std::vector<PlacedPlane>,
                                                       const std::string& config);
 
-  std::optional<SurfaceHit> first_hit(const Ray&) const override;
+  using Surfaces::first_hit;
+  std::optional<SurfaceHit> first_hit(const Ray&, RayRecord&) const override;
   bool occluded(const Ray&) const override;
   Box3 bounds() const override { return bounds_; }
 

@@ -40,11 +40,13 @@ FieldSolid::LocalRay FieldSolid::to_local(const Ray& ray) const {
           stretch};
 }
 
-std::optional<ElementHit> FieldSolid::hit(std::size_t element, const Ray& ray, bool any) const {
+std::optional<double> FieldSolid::hit(std::size_t element, const Ray& ray, bool any, ElementLog& log) const {
   const auto [local, stretch] = to_local(ray);
-  const auto found = tracer_->first_hit(element, local, any);
+  CellLog cell;
+  const auto found = tracer_->first_hit(element, local, any, cell);
+  log = {cell.enter / stretch, cell.undecided / stretch, cell.evaluations};
   if (!found) return {};
-  return ElementHit{found->t / stretch, found->evaluations, found->certified};
+  return found->t / stretch;
 }
 
 void FieldSolid::describe(std::size_t element, const Ray&, SurfaceHit& hit) const {

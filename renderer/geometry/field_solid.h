@@ -16,7 +16,7 @@ class FieldSolid final : public Solid {
 
   std::size_t element_count() const override { return tracer_->cell_count(); }
   Box3 element_box(std::size_t) const override;
-  std::optional<ElementHit> hit(std::size_t, const Ray&, bool any) const override;
+  std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
   void describe(std::size_t, const Ray&, SurfaceHit&) const override;
   std::size_t primitive_count() const override { return tracer_->field().size(); }
   std::size_t bytes() const override { return tracer_->statistics().bytes; }

@@ -20,7 +20,7 @@ Box3 MeshSolid::element_box(std::size_t element) const {
 
 // Signed volumes over the edges, each computed from the edge's ends in one order, so that neighbouring triangles
 // agree on the side of their common edge and leave no gap (Woop, Benthin, Wald 2013 by other means).
-std::optional<ElementHit> MeshSolid::hit(std::size_t element, const Ray& ray, bool) const {
+std::optional<double> MeshSolid::hit(std::size_t element, const Ray& ray, bool, ElementLog&) const {
   const auto [a, b, c] = corners(element);
   const Vec3d& d = ray.direction;
   const auto edge = [&](const Vec3d& p, const Vec3d& q) {
@@ -36,7 +36,7 @@ std::optional<ElementHit> MeshSolid::hit(std::size_t element, const Ray& ray, bo
   if (sum == 0) return {};
   const double t = (u * dot(a - ray.origin, d) + v * dot(b - ray.origin, d) + w * dot(c - ray.origin, d)) / sum;
   if (!(t >= ray.t_min && t <= ray.t_max)) return {};
-  return ElementHit{.t = t};
+  return t;
 }
 
 void MeshSolid::describe(std::size_t element, const Ray& ray, SurfaceHit& hit) const {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "field/base/id.h"
@@ -12,10 +13,11 @@
 
 namespace marrow {
 
-struct ElementHit {
-  double t = 0;  ///< along the world ray
+/// What a ray did in an element, hit or not; t along the world ray.
+struct ElementLog {
+  double enter = 0;                                            ///< where the ray came into the element
+  double undecided = std::numeric_limits<double>::infinity();  ///< the first place that could not be decided
   std::uint32_t evaluations = 0;
-  bool certified = true;
 };
 
 /// Immutable; safe to use from many threads. All rays and points are in world coordinates.
@@ -24,8 +26,8 @@ class Solid {
   virtual ~Solid() = default;
   virtual std::size_t element_count() const = 0;
   virtual Box3 element_box(std::size_t element) const = 0;
-  /// The first hit in an element with t in [ray.t_min, ray.t_max], not depending on t_max; any hit with `any`.
-  virtual std::optional<ElementHit> hit(std::size_t element, const Ray&, bool any) const = 0;
+  /// t of the first hit in an element, in [ray.t_min, ray.t_max] but not depending on t_max; any hit with `any`.
+  virtual std::optional<double> hit(std::size_t element, const Ray&, bool any, ElementLog&) const = 0;
   /// Fills normal, outside and material of a hit whose position is known.
   virtual void describe(std::size_t element, const Ray&, SurfaceHit&) const = 0;
   virtual std::size_t primitive_count() const = 0;

@@ -18,8 +18,12 @@ struct SurfaceHit {
   Vec3d outside;    ///< a point beside `position`, certified to lie outside: reflected rays start here, at t = 0
   ObjectId object;
   MaterialId material;
-  std::uint32_t evaluations = 0;  ///< field evaluations the ray took
-  bool certified = true;          ///< no surface before it was skipped, by proof
+};
+
+/// What it took to answer a ray. A function of the ray alone, whatever the order of traversal.
+struct RayRecord {
+  std::uint32_t evaluations = 0;  ///< of fields, in all cells that the ray entered up to its hit
+  bool certified = true;          ///< it is proved that no surface before the hit (or anywhere) was skipped
 };
 
 /// Immutable and safe to call from many threads.
@@ -27,7 +31,11 @@ class Surfaces {
  public:
   virtual ~Surfaces() = default;
   /// The first hit with ray.t_min <= t <= ray.t_max.
-  virtual std::optional<SurfaceHit> first_hit(const Ray&) const = 0;
+  virtual std::optional<SurfaceHit> first_hit(const Ray&, RayRecord&) const = 0;
+  std::optional<SurfaceHit> first_hit(const Ray& ray) const {
+    RayRecord unused;
+    return first_hit(ray, unused);
+  }
   /// Whether any surface lies on the ray within its interval.
   virtual bool occluded(const Ray&) const = 0;
   /// Of all finite objects; planes do not count. Empty when there are none.

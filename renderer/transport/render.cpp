@@ -99,8 +99,6 @@ void store(CentreHit& centre, const SurfaceHit& hit, const Camera& camera) {
     centre.position[i] = static_cast<float>(hit.position[i]);
   }
   centre.object = hit.object.value + 1;
-  centre.evaluations = hit.evaluations;
-  centre.certified = hit.certified;
 }
 
 FilmSample camera_sample(const Job& job, const Ray& ray, const std::optional<SurfaceHit>& hit, Sampler& sampler) {
@@ -117,7 +115,10 @@ void render_pixel(const Job& job, int x, int y, Pass pass, PixelSums& pixel) {
   Sampler sampler(x, y, job.settings.seed);
   if (pass.first == 0) {
     const Ray ray = scene.camera.ray(x + 0.5, y + 0.5);
-    const auto hit = scene.surfaces->first_hit(ray);
+    RayRecord record;
+    const auto hit = scene.surfaces->first_hit(ray, record);
+    pixel.centre.evaluations = record.evaluations;
+    pixel.centre.certified = record.certified;
     if (hit) store(pixel.centre, *hit, scene.camera);
     if (job.samples == 1) {
       sampler.start(0);

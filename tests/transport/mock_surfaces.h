@@ -25,12 +25,14 @@ class MockSurfaces final : public Surfaces {
   explicit MockSurfaces(std::vector<Sphere> spheres, std::vector<Plane> planes = {})
       : spheres_(std::move(spheres)), planes_(std::move(planes)) {}
 
-  std::optional<SurfaceHit> first_hit(const Ray& ray) const override {
+  using Surfaces::first_hit;
+  std::optional<SurfaceHit> first_hit(const Ray& ray, RayRecord& record) const override {
     std::optional<SurfaceHit> nearest;
     const auto offer = [&](double t, const UnitVec3& normal, MaterialId material, std::size_t object) {
       if (!(t >= ray.t_min && t <= ray.t_max) || (nearest && nearest->t <= t)) return;
       const Vec3d p = ray.at(t);
-      nearest = SurfaceHit{t, p, normal, p + normal * 1e-9, ObjectId(object), material, 1, true};
+      nearest = SurfaceHit{t, p, normal, p + normal * 1e-9, ObjectId(object), material};
+      record.evaluations = 1;
     };
     for (std::size_t i = 0; i < spheres_.size(); ++i)
       if (const double t = entry(ray, spheres_[i]); t < infinity)

@@ -10,8 +10,9 @@ struct Search {
   };
   Marcher& march;
   float front, end;
-  bool have_last = false, have_inside = false, certified = true;
-  Sample last, inside;  // last: the outside sample whose certificate reaches the front
+  bool have_last = false, have_inside = false;
+  float undecided = infinity;  // where the first gap too short to decide was passed over
+  Sample last, inside;         // last: the outside sample whose certificate reaches the front
   Island islands[most_islands];
   int island_count = 0;
 
@@ -120,7 +121,7 @@ struct Search {
       root = 0.5F * (front + right);
       return true;
     }
-    certified = false;
+    undecided = min_of(undecided, front);
     reach(right, island_count > 0 ? islands[island_count - 1].sample : last);
     return false;
   }
@@ -156,7 +157,7 @@ inline Root decide(Search& s, float guess, bool any) {
     const Sample p = s.march.sample(guess);
     s.record(p);
     if (s.missed()) return root;
-    root.certified = s.certified;
+    root.undecided = s.undecided;
     root.hit = s.pinned(root.t);
     if (!root.hit && any && s.have_inside) {
       root.hit = true;
@@ -165,12 +166,12 @@ inline Root decide(Search& s, float guess, bool any) {
     if (root.hit) return root;
     if (s.gap_end() - s.front < shortest_gap * p.distance) {
       root.hit = s.give_up_gap(root.t);
-      root.certified = s.certified;
+      root.undecided = s.undecided;
       if (root.hit || s.missed()) return root;
     }
     guess = s.guess();
   }
-  root.certified = false;
+  root.undecided = min_of(s.undecided, s.front);
   root.hit = s.have_inside;
   root.t = s.gap_end();
   return root;
