@@ -11,6 +11,23 @@ inline float min_of(float a, float b) { return a < b ? a : b; }
 inline float abs_of(float a) { return __builtin_fabsf(a); }
 inline float root_of(float a) { return __builtin_sqrtf(a); }
 
+// q^(-1/k) for q > 0 to some 1e-5: a guess from the exponent bits, then Newton's iteration y (1 + (1 - q y^k) / k).
+inline float inverse_root(float q, int k) {
+  unsigned bits;
+  __builtin_memcpy(&bits, &q, sizeof bits);
+  constexpr unsigned one = 127U << 23;  // the bits of 1.0F
+  bits = one + one / static_cast<unsigned>(k) - bits / static_cast<unsigned>(k);
+  float y;
+  __builtin_memcpy(&y, &bits, sizeof y);
+  const float step = 1 / static_cast<float>(k);
+  for (int i = 0; i < 3; ++i) {
+    float power = q;
+    for (int j = 0; j < k; ++j) power *= y;
+    y += y * (1 - power) * step;
+  }
+  return y;
+}
+
 inline V16 splat(float s) { return V16{} + s; }
 inline V16 load(const float* p) { return *static_cast<const V16*>(__builtin_assume_aligned(p, 64)); }
 inline V16 root_of(V16 v) {

@@ -12,6 +12,9 @@ struct Sample {
   float residual;            // V(u) - v of the raised field: positive where the exact field is surely below 1
   float nominal;             // the same of the field as summed
   float slope;               // derivative of the residual along the ray
+  // (v / V)^(-1/(n-1)) - 1 of the field as summed, and its derivative: 0 on the surface and, near a single skeleton,
+  // linear in the distance from it, so that Newton's method on it jumps well [Aydinlilar and Zanni 2021].
+  float scaled, scaled_slope;
   float x_weight, y_weight;  // -d residual / dx, dy
 };
 
@@ -44,15 +47,25 @@ struct Marcher {
     const float dy = (p.s.g[0] * p.s.dg[0] + p.s.g[1] * p.s.dg[1] + p.s.g[2] * p.s.dg[2]) / max_of(y, 1e-12F);
     const IsoCurve::View& iso = block.iso;
     const CurveValue curve = curve_at(iso, turned_u(iso, p.s.f, y));
-    p.nominal = curve.value - turned_v(iso, p.s.f, y);
+    const float v = turned_v(iso, p.s.f, y);
+    p.nominal = curve.value - v;
     p.x_weight = iso.sin_theta + curve.slope * iso.cos_theta;
     p.y_weight = iso.cos_theta - curve.slope * iso.sin_theta;
     p.slope = -p.x_weight * p.s.df - p.y_weight * dy;
+    set_scaled(p, v, turned_v(iso, p.s.df, dy), curve.value);
     p.s.f += level.f_error;
     p.y = y + level.g_error;
     p.residual = curve_at(iso, turned_u(iso, p.s.f, p.y)).value - turned_v(iso, p.s.f, p.y);
     if (!(p.residual == p.residual)) p.residual = p.nominal = -1;  // on a source: infinite field
     return p;
+  }
+
+  void set_scaled(Sample& p, float v, float dv, float curve) const {
+    const float inverse = 1 / max_of(curve, 1e-6F), q = max_of(v * inverse, 1e-6F);
+    const float dq = (dv - q * (p.slope + dv)) * inverse;  // (v / V)' with V' = residual' + v'
+    const float root = inverse_root(q, block.degree - 1);
+    p.scaled = root - 1;
+    p.scaled_slope = -root * dq / (q * static_cast<float>(block.degree - 1));
   }
 
   // sum_{j=1..m} (m+1-j) a^j for m = degree (field) and degree + 1 (gradient): psi_1^m(q) / q^2 with a = 1/(1-q),

@@ -54,44 +54,22 @@ struct Search {
     else if (island_count < most_islands) islands[island_count++] = {begin, finish, p};
   }
 
-  // Where to look next. Just before an estimated root, so that one certificate from there closes the gap; else in
-  // the middle of the first gap.
-  float guess() const {
-    const float right = gap_end(), gap = right - front;
-    float root = 0.5F * (front + right), back = 0;
-    if (have_last && last.slope < 0) {
-      const float newton = last.t - last.residual / last.slope;
-      if (newton > front && newton < right) {
-        root = bracketed() && inside.slope < 0 ? hermite_root(last.residual, inside.residual) : newton;
-        back = min_of(0.05F * (root - last.t), 2e-4F * last.distance);
-      }
-    } else if (bracketed() && inside.slope < 0) {
-      const float newton = inside.t - inside.residual / inside.slope;
-      if (newton > front && newton < right) {
-        root = newton;
-        back = 2e-4F * inside.distance;
-      }
-    }
-    const float inset = 0.02F * gap;
-    return min_of(max_of(root - back, front + min_of(inset, back + 1e-4F)), right - inset);
+  // Where the field as summed, without the level's errors, reaches 1: by the samples at the two ends of the first gap.
+  // NaN-free; may lie outside the gap.
+  float estimated_root() const {
+    const bool from_last = have_last && last.scaled_slope < 0;
+    const bool from_inside = bracketed() && inside.scaled_slope < 0;
+    if (from_last && from_inside) return hermite_root();
+    if (from_last) return last.t - last.scaled / last.scaled_slope;
+    if (from_inside) return inside.t - inside.scaled / inside.scaled_slope;
+    return infinity;
   }
 
-  // Where the field as summed, without the level's errors, reaches 1; from the samples at hand.
-  float nominal_root() const {
-    if (have_last && have_inside && last.slope < 0 && inside.slope < 0 && last.nominal > 0 && inside.nominal < 0)
-      return hermite_root(last.nominal, inside.nominal);
-    const bool use_last =
-        have_last && last.slope < 0 && !(have_inside && abs_of(inside.nominal) < abs_of(last.nominal));
-    if (use_last) return last.t - last.nominal / last.slope;
-    if (have_inside && inside.slope < 0) return inside.t - inside.nominal / inside.slope;
-    return 0.5F * (front + gap_end());
-  }
-
-  // The root of the cubic that meets values p0, p1 and slopes at both ends of the bracket.
-  float hermite_root(float p0, float p1) const {
-    const float h = inside.t - last.t;
-    const float d0 = last.slope * h, d1 = inside.slope * h;
-    float u = p0 / (p0 - p1);
+  // The root of the cubic that meets the scaled values and slopes of both samples.
+  float hermite_root() const {
+    const float h = inside.t - last.t, p0 = last.scaled, p1 = inside.scaled;
+    const float d0 = last.scaled_slope * h, d1 = inside.scaled_slope * h;
+    float u = p0 / max_of(p0 - p1, 1e-20F);
     for (int k = 0; k < 3; ++k) {
       const float u2 = u * u, u3 = u2 * u;
       const float v = p0 * (1 - 3 * u2 + 2 * u3) + d0 * (u - 2 * u2 + u3) + p1 * (3 * u2 - 2 * u3) + d1 * (u3 - u2);
@@ -103,14 +81,27 @@ struct Search {
     return last.t + u * h;
   }
 
+  // Where to look next: just before an estimated root in the first gap, so that one certificate from there closes the
+  // gap; else in the gap's middle.
+  float guess() const {
+    const float right = gap_end(), gap = right - front, root = estimated_root();
+    if (!(root > front && root < right)) return 0.5F * (front + right);
+    const float distance = have_last ? last.distance : inside.distance;
+    const float back = 2e-4F * distance + (bracketed() ? 0 : 0.02F * (root - front));
+    const float inset = 0.02F * gap;
+    const float least = min_of(min_of(inset, 1e-4F * distance), 0.5F * (root - front));
+    return min_of(max_of(root - back, front + least), right - inset);
+  }
+
   // Newton's root from the last outside sample, when it is proved: the certificate reaches it to within the
-  // shortest gap, the field is above 1 just behind it, and the step is so short that Newton's error, some three
-  // times its square over the distance to the skeleton, is below 2e-6 of that distance.
+  // shortest gap, and the field is above 1 just behind it. The step is so short that the scaled Newton step, whose error
+  // is of third order, is exact to float.
   bool pinned(float& root) const {
     if (!have_last || !(last.slope < 0)) return false;
     const float step = -last.residual / last.slope, tolerance = shortest_gap * last.distance;
-    root = last.t + step;
-    if (!(step < 8e-4F * last.distance) || !(root - front < tolerance) || !(root <= end)) return false;
+    const float scaled_step = -last.scaled / last.scaled_slope;
+    root = last.t + (abs_of(scaled_step - step) < 0.1F * step ? scaled_step : step);
+    if (!(step < 1.2e-3F * last.distance) || !(root - front < tolerance) || !(root <= end)) return false;
     return (bracketed() && inside.t - root < tolerance) || march.inside_at(last, step + tolerance);
   }
 
@@ -146,7 +137,8 @@ inline Approach approach(Search& s, bool any, float& guess) {
     if (gap < 1e-3F * p.distance) break;
   }
   // A little before the root, so that one fine certificate can reach it.
-  guess = s.nominal_root() - 3e-4F * (s.have_inside ? s.inside.distance : s.last.distance);
+  const float root = s.estimated_root();
+  guess = root < infinity ? root - 3e-4F * (s.have_inside ? s.inside.distance : s.last.distance) : next;
   return Approach::Near;
 }
 
