@@ -47,10 +47,13 @@ double rising_root(const Excess& excess, double low, double high) {
   return 0.5 * (low + high);
 }
 
+// The operator is 0 at f = 0 by definition; the curve is that of its limit.
+constexpr double least_x = 1e-9;
+
 // Points of the quarter plane x, y >= 0 on the line of given u.
 struct TurnedLine {
   double u, sin_theta, cos_theta;
-  double x(double v) const { return std::max(0.0, v * sin_theta - u * cos_theta); }
+  double x(double v) const { return std::max(least_x, v * sin_theta - u * cos_theta); }
   double y(double v) const { return std::max(0.0, u * sin_theta + v * cos_theta); }
   double first_v() const {
     double v = 0;
@@ -77,11 +80,11 @@ IsoCurve::IsoCurve(const Correction& correction, double alpha) : two_sided_(alph
   };
   // The far end: where the curve nears the axis x = 0, or else (alpha near pi/2) where y is six times the
   // gradient of the reference curve at the iso-value; no field of positive sources comes near either.
-  constexpr double least_x = 0.02;
   const double largest_y = 6.0 * (correction.degree() - 1);
   const double y_end = rising_root([&](double y) { return excess(least_x, y); }, 0, largest_y);
   u_begin_ = -critical_ * cos_;
-  const double u_end = std::min(y_end * sin_ - least_x * cos_, largest_y * sin_ - least_x * cos_);
+  // With theta = 0, u = -x ends at 0; the table goes a little further, so that x = 0 lies inside it.
+  const double u_end = sin_ > 0 ? std::min(y_end, largest_y) * sin_ : 0.01;
   step_ = (u_end - u_begin_) / (entry_count - 1);
 
   std::vector<double> value(entry_count), below(entry_count, 0), above(entry_count, 0);

@@ -7,11 +7,11 @@ inline constexpr float rounding = 4e-6F;
 struct Sample {
   float t;
   RaySums s;
-  float y;                   // |G|
-  float distance;            // to the nearest source, at most
-  float residual;            // V(u) - v of the raised field: positive where the exact field is surely below 1
-  float nominal;             // the same of the field as summed
-  float slope;               // derivative of the residual along the ray
+  float y;         // |G|
+  float distance;  // to the nearest source, at most
+  float residual;  // V(u) - v of the raised field: positive where the exact field is surely below 1
+  float nominal;   // the same of the field as summed
+  float slope;     // derivative of the residual along the ray
   // (v / V)^(-1/(n-1)) - 1 of the field as summed, and its derivative: 0 on the surface and, near a single skeleton,
   // linear in the distance from it, so that Newton's method on it jumps well [Aydinlilar and Zanni 2021].
   float scaled, scaled_slope;

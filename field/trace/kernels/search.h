@@ -94,8 +94,8 @@ struct Search {
   }
 
   // Newton's root from the last outside sample, when it is proved: the certificate reaches it to within the
-  // shortest gap, and the field is above 1 just behind it. The step is so short that the scaled Newton step, whose error
-  // is of third order, is exact to float.
+  // shortest gap, and the field is above 1 just behind it. The step is so short that the scaled Newton step, whose
+  // error is of third order, is exact to float.
   bool pinned(float& root) const {
     if (!have_last || !(last.slope < 0)) return false;
     const float step = -last.residual / last.slope, tolerance = shortest_gap * last.distance;
