@@ -1,5 +1,6 @@
 """From a scene file to picture files: the same bytes each time, and nothing lost when something is wrong."""
 import os
+import pathlib
 import signal
 import subprocess
 import time
@@ -7,13 +8,39 @@ import unittest
 
 from marrow_program import BAD, POINT, PROGRAM, ProgramTest
 
+BLEND = """\
+marrow: 1
+camera: {from: [0, 1.5, 7], to: [0, 0, 0], fov: 35}
+film: {size: [96, 54]}
+render: {spp: 4}
+lights:
+  - constant: {radiance: [0.4, 0.45, 0.5]}
+  - rectangle: {center: [2, 4, 3], normal: [-0.4, -0.8, -0.6], size: [2, 2], radiance: [12, 11, 10]}
+materials:
+  skin: {coated: {color: [0.8, 0.5, 0.4]}}
+  floor: {diffuse: {color: 0.6}}
+objects:
+  - name: pair
+    material: skin
+    field:
+      blend:
+        kernel: {inverse: 4}
+        alpha: contact
+        of:
+          - point: {at: [-1, 0, 0], radius: 1}
+          - segment: {from: [0.7, 0, 0], to: [2.2, 0.6, 0], radius: [0.7, 0.3]}
+  - name: floor
+    material: floor
+    plane: {point: [0, -1.2, 0], normal: [0, 1, 0]}
+"""
+
 EXR = b"\x76\x2f\x31\x01"
 PNG = b"\x89PNG\r\n\x1a\n"
 
 
 class RenderTest(ProgramTest):
-    def bytes_of(self, *arguments):
-        self.expect(0, "render", "point.yaml", "-o", "a.exr", "--png", "a.png", *arguments, SOURCE_DATE_EPOCH="1")
+    def bytes_of(self, *arguments, scene="point.yaml"):
+        self.expect(0, "render", scene, "-o", "a.exr", "--png", "a.png", *arguments, SOURCE_DATE_EPOCH="1")
         return (self.folder / "a.exr").read_bytes(), (self.folder / "a.png").read_bytes()
 
     def test_the_default_outputs_have_the_name_of_the_scene(self):
@@ -39,6 +66,15 @@ class RenderTest(ProgramTest):
         self.assertEqual(self.bytes_of("-t", "1"), first)
         self.assertEqual(self.bytes_of("-t", "2"), first)
         self.assertNotEqual(self.bytes_of("--seed", "8")[0], first[0])
+
+    def test_the_same_bytes_for_every_instruction_set_of_this_machine(self):
+        self.write("blend.yaml", BLEND)
+        best = self.bytes_of(scene="blend.yaml")
+        flags = pathlib.Path("/proc/cpuinfo").read_text()
+        sets = ["sse4"] + [name for name, flag in (("avx2", " avx2 "), ("avx512", " avx512bw ")) if flag in flags]
+        print("instruction sets compared:", *sets)
+        for name in sets:
+            self.assertEqual(self.bytes_of("--isa", name, "-t", "1", scene="blend.yaml"), best, name)
 
     def test_a_bad_scene_leaves_old_pictures_alone(self):
         self.write("bad.yaml", BAD)
