@@ -57,9 +57,9 @@ double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent,
     const double x = f.f + slope * step + f.second * n * (n + 1) * step * step;
     const double y = length(vec(f.si_gradient) + bent * step) + f.third * (n + 1) * (n + 2) * step * step;
     const double x_low = f.f + slope * step - f.second * n * (n + 1) * step * step;
-    if (iso.margin(x, y) > enough && (!iso.two_sided() || iso.margin(x_low, y) > enough)) break;
+    if (iso.margin(x, y) > enough && (!iso.two_sided() || iso.margin(x_low, y) > enough)) return step;
   }
-  return step;
+  return 1e-4 * f.nearest;  // not proved: beside a touch of the surface with itself
 }
 
 }  // namespace
@@ -99,6 +99,11 @@ Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const T
   const BlockKernels* kernels = block_kernels(options.instruction_set);
   if (kernels == nullptr)
     return failure("instruction set \"" + options.instruction_set + "\" is unknown or not of this machine");
+  // Without an f from which on all is inside, no distance to a skeleton is certainly inside.
+  if (!(critical_field_of(correction_of(field)) < 100))
+    return failure(
+        "`cavity: false` with so small an `alpha` lets holes open anywhere inside; it can be evaluated (probe, slice) "
+        "but not rendered");
   return std::unique_ptr<BlendTracer>(new BlendTracer(std::make_unique<State>(std::move(field), options, *kernels)));
 }
 

@@ -49,9 +49,11 @@ class SourceEmitter {
       const Piece part = r.begin == 0 && r.end == 1 ? whole : context_.cutter.part(whole, r.begin, r.end);
       const double ball = distance(part, center_) - half_ * std::sqrt(3.0);
       const double d = std::max({ball, separation(part.box(), box_), whole.inside_distance});
-      const auto rule = d > 0 ? precision_.rule_for(part, d, 1) : NearFar::Rule{};
-      if (rule.nodes > 0 || r.end - r.begin < 1e-3) {
-        add(part, rule);
+      const auto rule = precision_.rule_for(part, d, 1);
+      if (rule.within || r.end - r.begin < 1e-3) {
+        add_nodes(part, rule.nodes, center_, half_, context_.degree, curves);
+        f_error += rule.error.field;
+        gradient_error += rule.error.gradient;
         continue;
       }
       const double mid = 0.5 * (r.begin + r.end);
@@ -61,12 +63,6 @@ class SourceEmitter {
   }
 
  private:
-  void add(const Piece& part, const NearFar::Rule& found) {
-    add_nodes(part, found.nodes > 0 ? found.nodes : max_gauss_nodes, center_, half_, context_.degree, curves);
-    f_error += found.error.field;
-    gradient_error += found.error.gradient;
-  }
-
   const Block::Context& context_;
   const NearFar& precision_;
   Vec3d center_;

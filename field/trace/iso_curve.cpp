@@ -65,13 +65,17 @@ struct TurnedLine {
 
 }  // namespace
 
-IsoCurve::IsoCurve(const Correction& correction, double alpha) : two_sided_(alpha < 0) {
+double critical_field_of(const Correction& correction) {
+  return rising_root([&](double x) { return correction.value(x, 0) - 1; }, 1e-3, 8);
+}
+
+IsoCurve::IsoCurve(const Correction& correction, double alpha)
+    : critical_(critical_field_of(correction)), two_sided_(alpha < 0) {
   const double theta = std::max(alpha, 0.0);
   const bool sum = alpha >= std::numbers::pi / 2 - 1e-12;
   sin_ = sum ? 1 : sin(theta);
   cos_ = sum ? 0 : cos(theta);
   const auto excess = [&](double x, double y) { return correction.value(x, y) - 1; };
-  critical_ = rising_root([&](double x) { return excess(x, 0); }, 1e-3, 8);
 
   const auto curve = [&](double u) {
     const TurnedLine line{u, sin_, cos_};

@@ -14,8 +14,12 @@ namespace marrow {
 
 class Correction;
 
+/// The f with C(f, 0) = 1; infinite when there is none.
+double critical_field_of(const Correction&);
+
 class IsoCurve {
  public:
+  /// Needs a finite critical field.
   explicit IsoCurve(const Correction&, double alpha);
 
   /// Piecewise linear over u in [u_begin, u_begin + (size - 1) / inverse_step]; entries as float, sorted by u.
@@ -41,7 +45,7 @@ class IsoCurve {
     double x, y;
   };
   Slope gradient(double x, double y) const;
-  /// The f with C(f, 0) = 1.
+  /// critical_field_of() of the correction.
   double critical_field() const { return critical_; }
   /// Whether C falls in x somewhere (alpha < 0).
   bool two_sided() const { return two_sided_; }
@@ -50,7 +54,8 @@ class IsoCurve {
   double lower(double u) const;
   double upper(double u) const;
 
-  double sin_, cos_, critical_, u_begin_, step_;
+  double critical_;
+  double sin_ = 0, cos_ = 1, u_begin_ = 0, step_ = 1;
   bool two_sided_;
   std::vector<float> value_, lower_, upper_, slope_;
 };

@@ -87,11 +87,10 @@ std::vector<PieceIndex> NearFar::split(std::span<const Piece> pieces, std::span<
       near.push_back(i);
       continue;
     }
-    // A far piece is at least a cube radius away and no longer than its radius: some rule always serves.
     const Rule rule = rule_for(piece, d - cube_radius, quadrature_share);
     far.f_error += rule.error.field;
     far.gradient_error += rule.error.gradient;
-    add_nodes(piece, std::max(1, rule.nodes), center, half, degree_, piece.is_point() ? points : curves);
+    add_nodes(piece, rule.nodes, center, half, degree_, piece.is_point() ? points : curves);
   }
   fold(curves, degree_, far);
   fold(points, degree_ - 1, far);

@@ -31,7 +31,7 @@ class NearFar {
                                 double half, FarField& far) const;
 
   using Rule = GaussError::Rule;
-  /// The smallest rule whose error at this distance is within `share` of the budget.
+  /// The smallest rule whose error at this distance is within `share` of the budget, else the largest.
   Rule rule_for(const Piece&, double distance, double share) const;
 
  private:

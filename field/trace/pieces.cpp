@@ -19,9 +19,9 @@ double distance(const Piece& piece, const Vec3d& p) {
 PieceCutter::PieceCutter(int degree, double critical_field)
     : degree_(degree), normalisation_(curve_normalisation(degree)), critical_field_(critical_field) {}
 
-// At a point p at distance e from a straight piece, the source at arc length s from the nearest point is at most
-// e + s away, and on at least one side... the two sides' integrals are concave in their lengths, so the least
-// f is that of one side of the full length L:
+// At a point at distance e from a straight piece, the source at arc length s from the nearest point q is at most e + s
+// away. The sources on the two sides of q give integrals that are concave in the lengths of the sides, which add up to
+// L; so f is least when all of the piece is on one side:
 //   f >= tau_min^(n-1) / (N (n-1)) (e^-(n-1) - (e + L)^-(n-1)).
 // The largest e for which this exceeds the critical field is found by bisection.
 double PieceCutter::inside_distance(double smallest_radius, double length) const {

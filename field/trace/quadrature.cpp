@@ -62,13 +62,13 @@ GaussError::Bound GaussError::bound(int nodes, double mass, double largest_radiu
 GaussError::Rule GaussError::smallest_rule(double mass, double largest_radius, double slope, double length,
                                            double distance, Bound allowed) const {
   Scales s = scales(degree_, mass, largest_radius, slope, length, distance);
-  for (int m = 1; m <= max_gauss_nodes; ++m) {
+  for (int m = 1;; ++m) {
     s.field *= s.shrink;
     s.gradient *= s.shrink;
     const Bound b{field_[static_cast<std::size_t>(m)] * s.field, gradient_[static_cast<std::size_t>(m)] * s.gradient};
-    if (b.field <= allowed.field && b.gradient <= allowed.gradient) return {m, b};
+    const bool within = b.field <= allowed.field && b.gradient <= allowed.gradient;
+    if (within || m == max_gauss_nodes) return {m, b, within};
   }
-  return {};
 }
 
 }  // namespace marrow

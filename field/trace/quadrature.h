@@ -35,10 +35,11 @@ class GaussError {
   /// `mass` = L tau_max^(n-1) / N, `largest_radius` = tau_max, `slope` = |d tau / ds|.
   Bound bound(int nodes, double mass, double largest_radius, double slope, double length, double distance) const;
   struct Rule {
-    int nodes = 0;  ///< 0: even the largest rule is not good enough
+    int nodes = 1;
     Bound error{};
+    bool within = true;  ///< false: even this, the largest rule, is not good enough
   };
-  /// The smallest rule within `allowed`.
+  /// The smallest rule whose error is within `allowed`, else the largest.
   Rule smallest_rule(double mass, double largest_radius, double slope, double length, double distance,
                      Bound allowed) const;
 

@@ -9,8 +9,9 @@ struct Sample {
   RaySums s;
   float y;         // |G|
   float distance;  // to the nearest source, at most
-  float residual;  // V(u) - v of the raised field: positive where the exact field is surely below 1
-  float nominal;   // the same of the field as summed
+  float residual;  // lower V(u) - v of the field raised by the level's errors and by rounding: where it is positive the
+                   // field is surely below 1, and some step from here can be certified
+  float nominal;   // V(u) - v of the field as summed
   float slope;     // derivative of the residual along the ray
   // (v / V)^(-1/(n-1)) - 1 of the field as summed, and its derivative: 0 on the surface and, near a single skeleton,
   // linear in the distance from it, so that Newton's method on it jumps well [Aydinlilar and Zanni 2021].
@@ -55,7 +56,7 @@ struct Marcher {
     set_scaled(p, v, turned_v(iso, p.s.df, dy), curve.value);
     p.s.f += level.f_error;
     p.y = y + level.g_error;
-    p.residual = curve_at(iso, turned_u(iso, p.s.f, p.y)).value - turned_v(iso, p.s.f, p.y);
+    p.residual = margin_at(iso, p.s.f * (1 + rounding), p.y * (1 + rounding));
     if (!(p.residual == p.residual)) p.residual = p.nominal = -1;  // on a source: infinite field
     return p;
   }

@@ -100,7 +100,7 @@ struct Search {
     if (!have_last || !(last.slope < 0)) return false;
     const float step = -last.residual / last.slope, tolerance = shortest_gap * last.distance;
     const float scaled_step = -last.scaled / last.scaled_slope;
-    root = last.t + (abs_of(scaled_step - step) < 0.1F * step ? scaled_step : step);
+    root = last.t + (abs_of(scaled_step - step) < 0.1F * step + tolerance ? scaled_step : step);
     if (!(step < 1.2e-3F * last.distance) || !(root - front < tolerance) || !(root <= end)) return false;
     return (bracketed() && inside.t - root < tolerance) || march.inside_at(last, step + tolerance);
   }
@@ -113,7 +113,9 @@ struct Search {
       return true;
     }
     undecided = min_of(undecided, front);
-    reach(right, island_count > 0 ? islands[island_count - 1].sample : last);
+    if (island_count > 0) reach(right, islands[island_count - 1].sample);
+    else if (have_last) reach(right, last);
+    else front = right;
     return false;
   }
 };
@@ -128,13 +130,15 @@ inline Approach approach(Search& s, bool any, float& guess) {
   float next = 0.5F * (s.front + s.end);
   for (int i = 0; i < most_samples; ++i) {
     const Sample p = s.march.sample(next);
+    const float before = s.front;
     s.record(p);
     if (s.missed()) return Approach::Missed;
     if (any && p.residual <= 0 && s.march.inside_at(p, 0)) return Approach::SurelyInside;
     next = s.guess();
     const float gap = s.gap_end() - s.front;
     if (s.bracketed() && (gap < 0.1F * p.distance || (s.have_last && next - s.front < 0.05F * p.distance))) break;
-    if (gap < 1e-3F * p.distance) break;
+    const bool stuck = p.residual > 0 && s.front - before < 1e-3F * p.distance && p.t - before < 1e-2F * p.distance;
+    if (gap < 1e-3F * p.distance || stuck) break;
   }
   // A little before the root, so that one fine certificate can reach it.
   const float root = s.estimated_root();
@@ -147,6 +151,7 @@ inline Root decide(Search& s, float guess, bool any) {
   Root root;
   for (int i = 0; i < most_samples; ++i) {
     const Sample p = s.march.sample(guess);
+    const float before = s.front;
     s.record(p);
     if (s.missed()) return root;
     root.undecided = s.undecided;
@@ -162,6 +167,9 @@ inline Root decide(Search& s, float guess, bool any) {
       if (root.hit || s.missed()) return root;
     }
     guess = s.guess();
+    // Where the field all but touches 1 certificates are short: look from the other side of the touch.
+    if (p.residual > 0 && s.front - before < shortest_gap * p.distance)
+      guess = s.front + min_of(0.5F * (s.gap_end() - s.front), 1e-3F * p.distance);
   }
   root.undecided = min_of(s.undecided, s.front);
   root.hit = s.have_inside;

@@ -1,0 +1,149 @@
+// Far fields: polynomials near enough to what they stand for, the same function for a child, and bounded.
+#include "field/trace/far_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "field/skeleton/skeletons.h"
+#include "tests/trace/stage.h"
+
+namespace marrow::test {
+namespace {
+
+struct FarValue {
+  double f = 0;
+  Vec3d g{};
+};
+
+// In the cube's coordinates.
+FarValue value_of(const FarField& far, const Vec3d& x) {
+  FarValue v;
+  for (std::size_t i = 0; i < monomial_count; ++i) {
+    const Monomial& m = monomials[i];
+    const double px = integer_power(x.x, m.a), py = integer_power(x.y, m.b), pz = integer_power(x.z, m.c);
+    v.f += far.f[i] * px * py * pz;
+    const double c = far.potential[i];
+    if (m.a > 0) v.g.x += c * m.a * integer_power(x.x, m.a - 1) * py * pz;
+    if (m.b > 0) v.g.y += c * m.b * px * integer_power(x.y, m.b - 1) * pz;
+    if (m.c > 0) v.g.z += c * m.c * px * py * integer_power(x.z, m.c - 1);
+  }
+  return v;
+}
+
+TEST(FarField, TaylorRemainderIsTheTailOfTheSeries) {
+  for (int m = 2; m <= 8; ++m)
+    for (int degree = 0; degree <= 5; ++degree)
+      for (double q = 0.05; q < 0.95; q += 0.05) {
+        long double head = 0, term = 1;
+        for (int k = 0; k <= degree; term *= static_cast<long double>(q) * (m + k) / (k + 1), ++k) head += term;
+        const auto tail = static_cast<double>(1 / std::pow(1 - static_cast<long double>(q), m) - head);
+        const double bound = taylor_remainder(m, degree, q);
+        EXPECT_GE(bound, tail * (1 - 1e-9) - 1e-15) << m << ' ' << degree << ' ' << q;
+        EXPECT_LE(bound, tail * 1.01 + 1e-12) << m << ' ' << degree << ' ' << q;
+      }
+}
+
+TEST(FarField, MonomialsKnowTheirPlaces) {
+  for (std::size_t i = 0; i < monomial_count; ++i) {
+    EXPECT_EQ(monomial_index(monomials[i].a, monomials[i].b, monomials[i].c), i);
+    EXPECT_TRUE(i == 0 || monomials[i - 1].degree() <= monomials[i].degree());
+  }
+}
+
+struct Split {
+  BlendField blend;
+  std::vector<Piece> far_pieces;
+  Vec3d center;
+  double half;
+  FarField far;
+};
+
+// A random blend seen from a small cube, with the budget of the fine level or a hundred times that.
+Split random_split(Random& random, int degree, double tolerance) {
+  Split s{.blend = random_scene(random, {.degree = degree}, 12),
+          .far_pieces = {},
+          .center = random.vector(2),
+          .half = exp(random.between(-4, -0.7)),
+          .far = {}};
+  const auto pieces = PieceCutter(degree, 2.0).cut(s.blend);
+  std::vector<PieceIndex> all(pieces.size());
+  std::iota(all.begin(), all.end(), PieceIndex{0});
+  const NearFar near_far(degree, budget_for(tolerance, degree), *block_kernels(""));
+  const auto near = near_far.split(pieces, all, s.center, s.half, s.far);
+  for (const PieceIndex i : all)
+    if (std::find(near.begin(), near.end(), i) == near.end()) s.far_pieces.push_back(pieces[i]);
+  return s;
+}
+
+FarValue exact_far(const Split& s, const Vec3d& p) {
+  SkeletonSample sum;
+  for (const Piece& piece : s.far_pieces)
+    sum += piece.is_point() ? point_field<Derivatives::ScaleInvariant>({piece.from, piece.radius}, p, s.blend.degree)
+                            : segment_field<Derivatives::ScaleInvariant>(
+                                  {piece.from, piece.to, piece.radius_from, piece.radius_to}, p, s.blend.degree);
+  return {sum.value, sum.si_gradient};
+}
+
+TEST(FarField, IsWithinItsStatedErrorOverTheCube) {
+  Random random(41);
+  double f_use = 0, g_use = 0;
+  std::size_t far_pieces = 0;
+  for (int i = 0; i < 600; ++i) {
+    const int n = random.whole(3, 7);
+    const Split s = random_split(random, n, i % 2 ? 1e-5 : 1e-3);
+    far_pieces += s.far_pieces.size();
+    for (int k = 0; k < 20; ++k) {
+      Vec3d x = random.vector(1);
+      if (k % 4 == 0) x = x / max_component(abs(x));  // on a face
+      const FarValue exact = exact_far(s, s.center + x * s.half), found = value_of(s.far, x);
+      const double f_error = std::fabs(found.f - exact.f), g_error = length(found.g - exact.g);
+      // Moments are sums in float: some 1e-6 of the sum of norms.
+      const double rounding = 2e-6 * exact.f;
+      ASSERT_LE(f_error, s.far.f_error + rounding) << "n=" << n;
+      ASSERT_LE(g_error, s.far.gradient_error + 2 * n * rounding) << "n=" << n;
+      if (s.far.f_error > 0) f_use = std::max(f_use, f_error / s.far.f_error);
+      if (s.far.gradient_error > 0) g_use = std::max(g_use, g_error / s.far.gradient_error);
+    }
+  }
+  std::cout << "  " << far_pieces << " far pieces; largest error over bound: f " << f_use << ", grad_S f " << g_use
+            << '\n';
+  EXPECT_GT(far_pieces, 2000U);
+}
+
+TEST(FarField, OfAChildIsTheSameFunction) {
+  Random random(42);
+  for (int i = 0; i < 100; ++i) {
+    const Split s = random_split(random, random.whole(3, 7), 1e-3);
+    for (int octant = 0; octant < 8; ++octant) {
+      const FarField child = s.far.of_child(octant);
+      EXPECT_EQ(child.f_error, s.far.f_error);
+      EXPECT_EQ(child.gradient_error, s.far.gradient_error);
+      const Vec3d x = random.vector(1), shift = octant_center({0, 0, 0}, 1, octant);
+      const FarValue a = value_of(child, x), b = value_of(s.far, shift + x * 0.5);
+      EXPECT_NEAR(a.f, b.f, 1e-12 * (1 + b.f));
+      EXPECT_LT(length(a.g - b.g), 1e-12 * (1 + length(b.g)));
+    }
+  }
+}
+
+TEST(FarField, BoundsContainTheField) {
+  Random random(43);
+  for (int i = 0; i < 300; ++i) {
+    const Split s = random_split(random, random.whole(3, 7), 1e-3);
+    const FarField::Bounds b = s.far.bounds();
+    for (int k = 0; k < 20; ++k) {
+      const Vec3d x = random.vector(1);
+      const FarValue polynomial = value_of(s.far, x), exact = exact_far(s, s.center + x * s.half);
+      for (const FarValue& v : {polynomial, exact}) {
+        EXPECT_LE(std::fabs(v.f - b.f_center), b.f_variation + 2e-6 * exact.f);
+        EXPECT_LE(length(v.g - b.gradient_center), b.gradient_variation + 4e-5 * exact.f);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace marrow::test

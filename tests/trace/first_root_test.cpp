@@ -1,0 +1,176 @@
+// First roots against an independent oracle: none missed, none made up, all in place.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/trace/all_cells.h"
+#include "tests/trace/oracle.h"
+#include "tests/trace/random_rays.h"
+
+namespace marrow::test {
+namespace {
+
+// A stretch inside is missed if the corrected field gets this far above 1 on it. The traced field may differ by the
+// tolerance of 1e-5 of the radius, times the slope of some n - 1 over a radius.
+constexpr double grazing_excess = 5e-5;
+// Allowed distance of a hit from the exact surface, over the distance to the skeleton.
+constexpr double largest_displacement = 2e-5;
+
+struct Tally {
+  int rays = 0, hits = 0, missed = 0, phantom = 0, uncertified = 0, grazing = 0;
+  double displacement = 0, graze = 0, time_error = 0;
+  long evaluations = 0;
+
+  void add(const Tally& b) {
+    rays += b.rays;
+    hits += b.hits;
+    missed += b.missed;
+    phantom += b.phantom;
+    uncertified += b.uncertified;
+    grazing += b.grazing;
+    displacement = std::max(displacement, b.displacement);
+    graze = std::max(graze, b.graze);
+    time_error = std::max(time_error, b.time_error);
+    evaluations += b.evaluations;
+  }
+  void print(const std::string& title) const {
+    std::cout << "  " << title << ": " << rays << " rays, " << hits << " hits, missed " << missed << ", phantom "
+              << phantom << ", grazing " << grazing << " (excess up to " << graze << "), largest displacement "
+              << displacement << ", largest |dt| / radius of the others " << time_error << ", uncertified "
+              << uncertified << ", evaluations per ray " << static_cast<double>(evaluations) / rays << '\n';
+  }
+};
+
+class Judge {
+ public:
+  explicit Judge(const BlendField& field) : field_(field), oracle_(field_), cells_(field) {}
+
+  std::optional<double> check(Ray ray) {
+    ++tally.rays;
+    const auto [hit, undecided, evaluations] = cells_.trace(ray);
+    tally.evaluations += evaluations;
+    if (hit) place(ray, *hit);
+    if (undecided < (hit ? hit->t : 1e300)) ++tally.uncertified;
+    // The oracle starts where the cells do: there is nothing before, as other tests hold.
+    const double size = length(cells_.bounds().size()),
+                 middle = dot(cells_.bounds().center() - ray.origin, ray.direction);
+    Ray near = ray;
+    near.t_min = std::max(0.0, middle - size);
+    near.t_max = middle + size;
+    const auto truth = oracle_.first_root(near);
+    if (truth) compare(near, *truth, hit ? hit->t : near.t_max);
+    return hit ? std::optional(hit->t) : std::nullopt;
+  }
+  const BlendField& field() const { return field_; }
+
+  Tally tally;
+  double worst_missed = 0;
+
+ private:
+  // A hit must be on the exact surface.
+  void place(const Ray& ray, const AllCells::Hit& hit) {
+    ++tally.hits;
+    const double off = oracle_.displacement(ray.at(hit.t));
+    if (off < largest_displacement) tally.displacement = std::max(tally.displacement, off);
+    else ++tally.phantom;
+  }
+  // Nothing worth mentioning may be inside before the hit.
+  void compare(const Ray& ray, double truth, double found) {
+    const double radius = oracle_.skeleton_distance(ray.at(truth));
+    if (std::fabs(found - truth) < 1e-4 * radius) {
+      tally.time_error = std::max(tally.time_error, std::fabs(found - truth) / radius);
+      return;
+    }
+    if (found < truth) return;  // judged by place()
+    const double excess = oracle_.largest_excess(ray, truth, std::min(found, truth + 4 * radius));
+    if (excess < grazing_excess) {
+      ++tally.grazing;
+      tally.graze = std::max(tally.graze, excess);
+      return;
+    }
+    ++tally.missed;
+    worst_missed = std::max(worst_missed, excess);
+  }
+
+  BlendField field_;
+  Oracle oracle_;
+  AllCells cells_;
+};
+
+std::vector<Setting> settings() {
+  std::vector<Setting> all;
+  for (const int n : {3, 4, 5})
+    for (const bool cavity : {true, false})
+      for (const double alpha : traced_angles(n, cavity))
+        if (cavity || alpha > 0) all.push_back({n, alpha, cavity});  // else holes at every saddle: see the README
+  return all;
+}
+
+void expect_clean(const Judge& judge, const Setting& s) {
+  EXPECT_EQ(judge.tally.missed, 0) << name_of(s) << ", excess up to " << judge.worst_missed;
+  EXPECT_EQ(judge.tally.phantom, 0) << name_of(s);
+}
+
+TEST(FirstRoot, AgreesWithTheOracle) {
+  Random random(71);
+  Tally all;
+  for (int round = 0; round < 2; ++round)
+    for (const Setting& s : settings()) {
+      Judge judge(random_scene(random, s, random.whole(2, 12)));
+      for (int i = 0; i < 120; ++i) judge.check(any_ray(random, judge.field()));
+      expect_clean(judge, s);
+      all.add(judge.tally);
+    }
+  all.print("all kinds");
+  EXPECT_GT(all.hits, 1000);
+}
+
+// Between a ray that hits and one beside it that does not, the silhouette is found by bisection; the rays on both
+// sides of it are the hardest there are.
+TEST(FirstRoot, AgreesWithTheOracleAtSilhouettes) {
+  Random random(72);
+  Tally all;
+  for (const Setting& s : settings()) {
+    Judge judge(random_scene(random, s, random.whole(2, 7)));
+    for (int i = 0; i < 7; ++i) {
+      const Vec3d eye = random_direction(random) * 6;
+      Vec3d hit = random.vector(1.2), miss = random.vector(3);
+      if (!judge.check(between(eye, hit)) || judge.check(between(eye, miss))) continue;
+      for (int k = 0; k < 22; ++k) {
+        const Vec3d middle = (hit + miss) * 0.5;
+        (judge.check(between(eye, middle)) ? hit : miss) = middle;
+      }
+    }
+    expect_clean(judge, s);
+    all.add(judge.tally);
+  }
+  all.print("silhouettes");
+  EXPECT_GT(all.hits, 200);
+}
+
+// What lies between t_min and t_max counts, and t does not depend on t_max.
+TEST(FirstRoot, KeepsToTheInterval) {
+  Random random(73);
+  const AllCells cells(random_scene(random, {.degree = 4, .alpha = contact_alpha(4)}, 5));
+  int hits = 0;
+  for (int i = 0; i < 500; ++i) {
+    Ray ray = chord(random);
+    const auto free = cells.first_hit(ray);
+    if (!free) continue;
+    ++hits;
+    ray.t_max = free->t;
+    const auto exact = cells.first_hit(ray);
+    ASSERT_TRUE(exact);
+    EXPECT_EQ(exact->t, free->t);
+    ray.t_max = std::nextafter(free->t, 0.0);
+    EXPECT_FALSE(cells.first_hit(ray));
+    ray.t_max = ray.t_min = free->t - 1e-3;
+    EXPECT_FALSE(cells.first_hit(ray));
+  }
+  EXPECT_GT(hits, 100);
+}
+
+}  // namespace
+}  // namespace marrow::test

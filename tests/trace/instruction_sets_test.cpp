@@ -1,0 +1,74 @@
+// The same bits from every instruction set.
+#include <bit>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "field/trace/block_kernels.h"
+#include "tests/trace/all_cells.h"
+#include "tests/trace/random_rays.h"
+
+namespace marrow::test {
+namespace {
+
+std::vector<std::string> sets_here() {
+  std::vector<std::string> names;
+  for (const char* name : {"sse4", "avx2", "avx512"})
+    if (block_kernels(name) != nullptr) names.emplace_back(name);
+  return names;
+}
+
+bool same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+bool same(const Vec3d& a, const Vec3d& b) { return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z); }
+
+TEST(InstructionSets, UnknownOnesAreRefused) {
+  EXPECT_EQ(block_kernels("mmx"), nullptr);
+  EXPECT_NE(block_kernels(""), nullptr);
+  EXPECT_FALSE(BlendTracer::make(BlendField{}, {.instruction_set = "mmx"}));
+}
+
+TEST(InstructionSets, GiveTheSameBits) {
+  const auto sets = sets_here();
+  ASSERT_GE(sets.size(), 2U) << "nothing to compare on this machine";
+  Random random(91);
+  int rays = 0, hits = 0;
+  const Setting settings[] = {{3, 1.0}, {4, contact_alpha(4)}, {4, -0.4}, {5, 0}, {7, 1.2}};
+  for (const Setting& s : settings) {
+    const BlendField blend = random_scene(random, s, 4);
+    std::vector<AllCells> tracers;
+    for (const auto& name : sets) tracers.emplace_back(blend, name);
+    const BlendTracer& first = tracers.front().tracer();
+    for (const AllCells& other : tracers) {
+      ASSERT_EQ(other.tracer().cell_count(), first.cell_count());
+      for (std::size_t i = 0; i < first.cell_count(); ++i) {
+        const Box3 a = first.cell_box(i), b = other.tracer().cell_box(i);
+        ASSERT_TRUE(same(a.lower, b.lower) && same(a.upper, b.upper));
+      }
+    }
+    for (int i = 0; i < 4000; ++i, ++rays) {
+      const Ray ray = any_ray(random, blend);
+      const auto expected = tracers.front().trace(ray);
+      hits += expected.hit.has_value();
+      for (std::size_t k = 1; k < sets.size(); ++k) {
+        const auto found = tracers[k].trace(ray);
+        ASSERT_EQ(found.hit.has_value(), expected.hit.has_value()) << sets[k] << ' ' << name_of(s);
+        ASSERT_EQ(found.evaluations, expected.evaluations) << sets[k] << ' ' << name_of(s);
+        ASSERT_TRUE(same(found.undecided, expected.undecided)) << sets[k] << ' ' << name_of(s);
+        if (!expected.hit) continue;
+        ASSERT_EQ(found.hit->cell, expected.hit->cell) << sets[k] << ' ' << name_of(s);
+        ASSERT_TRUE(same(found.hit->t, expected.hit->t)) << sets[k] << ' ' << name_of(s);
+        const Vec3d p = ray.at(expected.hit->t);
+        const SurfacePoint a = first.surface_at(expected.hit->cell, p);
+        const SurfacePoint b = tracers[k].tracer().surface_at(expected.hit->cell, p);
+        ASSERT_TRUE(same(a.normal.vec(), b.normal.vec()) && same(a.outside, b.outside)) << sets[k];
+      }
+    }
+  }
+  std::cout << "  " << rays << " rays, " << hits << " hits on";
+  for (const auto& name : sets) std::cout << ' ' << name;
+  std::cout << '\n';
+  EXPECT_GT(hits, rays / 10);
+}
+
+}  // namespace
+}  // namespace marrow::test

@@ -1,0 +1,134 @@
+// The table of the curve C = 1 never says outside or inside wrongly, and says it nearly always.
+#include "field/trace/iso_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/trace/random_scene.h"
+
+namespace marrow::test {
+namespace {
+
+std::vector<Setting> settings() {
+  std::vector<Setting> all;
+  for (int n = 3; n <= 6; ++n)
+    for (const bool cavity : {true, false})
+      for (const Projection projection : {Projection::Paper, Projection::Exact})
+        for (const double alpha : {-0.6, -0.2, 0.0, 0.003, 0.4, 1.1, contact_alpha(n, cavity, projection), 1.5, 1.57,
+                                   1.57079632679, std::numbers::pi / 2})
+          if (alpha >= 0 || projection == Projection::Paper) all.push_back({n, alpha, cavity, projection});
+  return all;
+}
+
+struct Case {
+  Setting setting;
+  Correction correction;
+  IsoCurve iso;
+};
+
+// A table takes some 20 ms.
+const std::vector<Case>& cases() {
+  static const std::vector<Case> all = [] {
+    std::vector<Case> made;
+    for (const Setting& s : settings()) {
+      const Correction c(s.degree, s.alpha, s.cavity, s.projection);
+      made.push_back({s, c, IsoCurve(c, s.alpha)});
+    }
+    return made;
+  }();
+  return all;
+}
+
+// Settings without any f that is inside whatever G is.
+bool has_no_critical_field(const Setting& s) { return !s.cavity && s.alpha < 0.01; }
+
+// f mostly about the surface, sometimes tiny as it is far away or between skeletons.
+double random_field(Random& random) {
+  return random.between(0, 1) < 0.2 ? exp(random.between(-20, 0)) : random.between(0, 3.5);
+}
+
+TEST(IsoCurve, IsNeverWronglyOutsideOrInside) {
+  Random random(31);
+  for (const auto& [s, c, iso] : cases()) {
+    int outside = 0, inside = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const double x_low = random_field(random), x_high = x_low + random.between(0, 1) * random.between(0, 0.5);
+      const double y = random.between(0, 3.0 * (s.degree - 1));
+      if (iso.outside(x_low, x_high, y)) {
+        ++outside;
+        for (int k = 0; k < 5; ++k) {
+          const double x = k == 0 ? x_low : k == 1 ? x_high : random.between(x_low, x_high);
+          ASSERT_LT(c.value(x, k < 2 ? y : random.between(0, y)), 1) << name_of(s) << " x=" << x << " y=" << y;
+        }
+      }
+      if (iso.inside(x_low, y)) {
+        ++inside;
+        for (int k = 0; k < 3; ++k)
+          ASSERT_GT(c.value(x_low + (k > 0 ? random.between(0, 3) : 0), y + (k > 1 ? random.between(0, 3) : 0)), 1)
+              << name_of(s) << " x=" << x_low << " y=" << y;
+      }
+    }
+    EXPECT_GT(outside, 100) << name_of(s);
+    EXPECT_TRUE(s.alpha < 0 || inside > 100) << name_of(s) << ": " << inside;
+  }
+}
+
+TEST(IsoCurve, IsTight) {
+  Random random(32);
+  double worst = 0;
+  for (const auto& [s, c, iso] : cases()) {
+    for (int i = 0; i < 2000; ++i) {
+      const double x = random_field(random), y = random.between(0, 2.5 * (s.degree - 1));
+      const double value = c.value(x, y);
+      if (value < 1 && !iso.outside(x, x, y)) worst = std::max(worst, 1 - value);
+      EXPECT_TRUE(value > 0.98 || iso.outside(x, x, y)) << name_of(s) << " x=" << x << " y=" << y << " C=" << value;
+    }
+  }
+  std::cout << "  largest 1 - C not called outside: " << worst << '\n';
+}
+
+// Far away the field is next to nothing, and space there must be dropped, whatever alpha.
+TEST(IsoCurve, TinyFieldsAreOutside) {
+  for (const auto& [s, c, iso] : cases()) {
+    for (double f = 0.1; f > 1e-12; f /= 3) EXPECT_TRUE(iso.outside(0, f, f)) << name_of(s) << " up to " << f;
+  }
+}
+
+TEST(IsoCurve, CriticalFieldIsInsideWhateverTheGradient) {
+  for (const auto& [s, c, iso] : cases()) {
+    EXPECT_TRUE(std::isfinite(iso.critical_field())) << name_of(s);
+    if (has_no_critical_field(s)) continue;
+    EXPECT_NEAR(c.value(iso.critical_field(), 0), 1, 1e-6) << name_of(s);
+  }
+}
+
+// What the kernels read: on the line of a given u, the point at v = lower has C <= 1.
+TEST(IsoCurve, LowerTableIsBelowTheCurve) {
+  Random random(33);
+  double widest = 0;
+  for (const auto& [s, c, iso] : cases()) {
+    const IsoCurve::View view = iso.view();
+    for (int i = 0; i < 3000; ++i) {
+      const double at = random.between(0, view.size - 1.001);
+      const auto k = static_cast<int>(at);
+      const auto fraction = static_cast<float>(at - k);
+      const float v = view.lower[k] + (view.lower[k + 1] - view.lower[k]) * fraction;
+      const float middle = view.value[k] + (view.value[k + 1] - view.value[k]) * fraction;
+      EXPECT_LE(v, middle);
+      widest = std::max(widest, static_cast<double>(middle - v));
+      const double u = view.u_begin + at / static_cast<double>(view.inverse_step);
+      const double x = v * static_cast<double>(view.sin_theta) - u * static_cast<double>(view.cos_theta);
+      const double y = u * static_cast<double>(view.sin_theta) + v * static_cast<double>(view.cos_theta);
+      if (x < 0 || y < 0) continue;
+      ASSERT_LE(c.value(x, y), 1 + 1e-7) << name_of(s) << " u=" << u << " x=" << x << " y=" << y;
+    }
+  }
+  std::cout << "  widest gap of the table below the curve: " << widest << '\n';
+}
+
+}  // namespace
+}  // namespace marrow::test

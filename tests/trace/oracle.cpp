@@ -1,0 +1,114 @@
+// Marches with certified steps through exact fields.
+#include "tests/trace/oracle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "field/math/elementary.h"
+
+namespace marrow::test {
+namespace {
+
+// Shorter steps than this times the distance to the skeleton are taken uncertified.
+constexpr double shortest_step = 1e-6;
+
+double distance_to(const SegmentSkeleton& s, const Vec3d& p) {
+  const Vec3d along = s.to - s.from;
+  const double at = std::clamp(dot(p - s.from, along) / length_squared(along), 0.0, 1.0);
+  return length(p - s.from - along * at);
+}
+
+// (1-q)^-m - 1 - m q, from above: Lagrange's remainder.
+double remainder(int m, double q) { return m * (m + 1) / 2.0 * q * q / integer_power(1 - q, m + 2); }
+
+}  // namespace
+
+// What bounds the field around one point of a ray.
+struct Oracle::Local {
+  double f, slope;  // along the ray
+  Vec3d g, bend;    // grad_S f and its derivative along the ray
+  double n_k;       // at least n K
+  double distance;
+};
+
+Oracle::Oracle(const BlendField& blend) : blend_(blend), correction_(correction_of(blend)) {}
+
+double Oracle::value(const Vec3d& p) const { return corrected_value(blend_, p); }
+
+double Oracle::skeleton_distance(const Vec3d& p) const {
+  double d = std::numeric_limits<double>::infinity();
+  for (const auto& s : blend_.points.skeletons) d = std::min(d, length(p - s.at));
+  for (const auto& s : blend_.segments.skeletons) d = std::min(d, distance_to(s, p));
+  return d;
+}
+
+double Oracle::displacement(const Vec3d& p) const {
+  const BlendSample s = evaluate(blend_, p);
+  return std::fabs(s.corrected - 1) / (length(s.corrected_gradient) * skeleton_distance(p));
+}
+
+Oracle::Local Oracle::local(const Vec3d& p, const Vec3d& direction) const {
+  const SkeletonSample s = sum_of_primitives<Derivatives::Second>(blend_, p);
+  const auto& j = s.si_jacobian.rows;
+  const double trace = j[0].x + j[1].y + j[2].z;  // m (m-1) K for exponent m: n K <= trace / (n-2) with points
+  return {s.value,
+          dot(s.gradient, direction),
+          s.si_gradient,
+          s.si_jacobian.times(direction),
+          trace / (blend_.degree - 2) * (1 + 1e-10),
+          skeleton_distance(p) * (1 - 1e-12)};
+}
+
+// Both bounds are convex in the step, so its ends suffice.
+bool Oracle::outside(const Local& l, double step) const {
+  const double q = step / l.distance;
+  if (!(q < 0.9)) return false;
+  const double bend = l.f * remainder(blend_.degree, q), end = l.f + l.slope * step;
+  const double high = std::max(l.f, end + bend), low = std::max(0.0, std::min(l.f, end - bend));
+  const double g_end = length(l.g + l.bend * step) + l.n_k * l.distance * remainder(blend_.degree + 1, q);
+  const double g = std::max(length(l.g), g_end);
+  return correction_.value(high, g) < 1 && (blend_.alpha >= 0 || correction_.value(low, g) < 1);
+}
+
+double Oracle::certified_step(const Local& l, double limit) const {
+  double high = std::min(limit, 0.7 * l.distance);
+  if (outside(l, high)) return high;
+  double low = high;
+  do {
+    high = low;
+    low *= 0.25;
+    if (low < shortest_step * l.distance) return shortest_step * l.distance;
+  } while (!outside(l, low));
+  for (int i = 0; i < 4; ++i) {
+    const double middle = std::sqrt(low * high);
+    (outside(l, middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+std::optional<double> Oracle::first_root(const Ray& ray) const {
+  double t = ray.t_min, before = t;
+  for (;;) {
+    if (value(ray.at(t)) >= 1) break;
+    if (t >= ray.t_max) return {};
+    before = t;
+    t += certified_step(local(ray.at(t), ray.direction), ray.t_max - t);
+    if (t > ray.t_max) t = ray.t_max;
+  }
+  for (int i = 0; i < 40 && t > before; ++i) {
+    const double middle = 0.5 * (before + t);
+    (value(ray.at(middle)) >= 1 ? t : before) = middle;
+  }
+  return t;
+}
+
+double Oracle::largest_excess(const Ray& ray, double t0, double t1) const {
+  double largest = value(ray.at(t0)) - 1;
+  const double scale = skeleton_distance(ray.at(t0));
+  for (double step = 1e-7 * scale; t0 + step < t1; step *= 1.2)
+    largest = std::max(largest, value(ray.at(t0 + step)) - 1);
+  return largest;
+}
+
+}  // namespace marrow::test

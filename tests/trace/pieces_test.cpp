@@ -1,0 +1,91 @@
+// Pieces add up to their skeletons, and what is called inside is inside.
+#include "field/trace/pieces.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "field/skeleton/skeletons.h"
+#include "tests/trace/random_scene.h"
+
+namespace marrow::test {
+namespace {
+
+constexpr double critical_field = 2.1;
+
+SegmentSkeleton skeleton_of(const Piece& p) { return {p.from, p.to, p.radius_from, p.radius_to}; }
+
+SkeletonSample field_of(const Piece& piece, const Vec3d& p, int degree) {
+  return piece.is_point() ? point_field<Derivatives::ScaleInvariant>({piece.from, piece.radius}, p, degree)
+                          : segment_field<Derivatives::ScaleInvariant>(skeleton_of(piece), p, degree);
+}
+
+TEST(Pieces, AddUpToTheBlend) {
+  Random random(21);
+  for (int n = 3; n <= 7; ++n) {
+    const BlendField blend = random_scene(random, {.degree = n}, 9);
+    const auto pieces = PieceCutter(n, critical_field).cut(blend);
+    ASSERT_GT(pieces.size(), blend.size());
+    for (const Piece& p : pieces) EXPECT_LE(p.length, p.radius * (1 + 1e-9));
+    for (int i = 0; i < 300; ++i) {
+      const Vec3d p = random.vector(3);
+      SkeletonSample sum;
+      for (const Piece& piece : pieces) sum += field_of(piece, p, n);
+      const auto whole = sum_of_primitives<Derivatives::ScaleInvariant>(blend, p);
+      EXPECT_LT(relative(sum.value, whole.value), 1e-11) << "n=" << n;
+      EXPECT_LT(length(sum.si_gradient - whole.si_gradient), 1e-10 * n * whole.value) << "n=" << n;
+    }
+  }
+}
+
+TEST(Pieces, PartsAddUpToTheirPiece) {
+  Random random(22);
+  for (int i = 0; i < 500; ++i) {
+    const int n = random.whole(3, 7);
+    const PieceCutter cutter(n, critical_field);
+    const BlendField blend = random_scene(random, {.degree = n}, 1);
+    const auto pieces = cutter.cut(blend);
+    const Piece& piece = pieces[static_cast<std::size_t>(random.whole(0, static_cast<int>(pieces.size()) - 1))];
+    const double cut = random.between(0.01, 0.99);
+    const Piece left = cutter.part(piece, 0, cut), right = cutter.part(piece, cut, 1);
+    const Vec3d p = random.vector(3);
+    EXPECT_LT(relative(field_of(left, p, n).value + field_of(right, p, n).value, field_of(piece, p, n).value), 1e-11);
+    EXPECT_GE(left.mass * (1 + 1e-12), left.length * integer_power(left.radius, n - 1) / curve_normalisation(n));
+    EXPECT_EQ(left.inside_distance, piece.inside_distance);
+  }
+}
+
+TEST(Pieces, MassBoundsTheFieldFromAfar) {
+  Random random(23);
+  for (int i = 0; i < 2000; ++i) {
+    const int n = random.whole(3, 7);
+    const auto pieces = PieceCutter(n, critical_field).cut(random_scene(random, {.degree = n}, 3));
+    const Vec3d p = random.vector(3);
+    for (const Piece& piece : pieces) {
+      const double d = distance(piece, p);
+      EXPECT_LE(field_of(piece, p, n).value, piece.mass / integer_power(d, piece.is_point() ? n - 1 : n) * (1 + 1e-11));
+    }
+  }
+}
+
+TEST(Pieces, NearerThanInsideDistanceIsInside) {
+  Random random(24);
+  double least = 1e300;
+  for (int i = 0; i < 3000; ++i) {
+    const int n = random.whole(3, 7);
+    const auto pieces = PieceCutter(n, critical_field).cut(random_scene(random, {.degree = n}, 3));
+    for (const Piece& piece : pieces) {
+      const Vec3d on = lerp(piece.from, piece.to, std::clamp(random.between(-0.5, 1.5), 0.0, 1.0));
+      const Vec3d p = on + random_direction(random) * (piece.inside_distance * random.between(0.5, 1));
+      if (distance(piece, p) == 0) continue;
+      const double f = field_of(piece, p, n).value;
+      EXPECT_GT(f, critical_field) << "n=" << n;
+      least = std::min(least, f);
+    }
+  }
+  std::cout << "  least field within inside_distance: " << least << " for " << critical_field << '\n';
+  EXPECT_LT(least, 1.3 * critical_field) << "the distance could be larger";
+}
+
+}  // namespace
+}  // namespace marrow::test

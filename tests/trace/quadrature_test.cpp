@@ -1,0 +1,105 @@
+// Gauss-Legendre rules are exact for polynomials, and their error for a piece of skeleton is bounded.
+#include "field/trace/quadrature.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "field/skeleton/skeletons.h"
+#include "tests/trace/random_scene.h"
+
+namespace marrow::test {
+namespace {
+
+TEST(Quadrature, IsExactForPolynomials) {
+  for (int count = 1; count <= max_gauss_nodes; ++count) {
+    const GaussNodes rule = gauss_legendre(count);
+    ASSERT_EQ(rule.positions.size(), static_cast<std::size_t>(count));
+    for (int power = 0; power < 2 * count; ++power) {
+      double sum = 0;
+      for (std::size_t i = 0; i < rule.positions.size(); ++i)
+        sum += rule.weights[i] * integer_power(rule.positions[i], power);
+      EXPECT_NEAR(sum, 1.0 / (power + 1), 1e-15) << count << " nodes, power " << power;
+    }
+  }
+}
+
+struct PieceCase {
+  SegmentSkeleton piece;
+  Vec3d p;
+  int degree;
+  double length, distance;
+
+  double mass() const {
+    return length * integer_power(std::max(piece.radius_from, piece.radius_to), degree - 1) /
+           curve_normalisation(degree);
+  }
+};
+
+// A segment of length up to 1.5 of its radius, and a point 0.2 to 10 lengths away from it in any direction.
+PieceCase random_piece(Random& random, int degree) {
+  PieceCase c{.piece = {}, .p = {}, .degree = degree, .length = exp(random.between(-3, 0.4)), .distance = 0};
+  c.piece.from = random.vector(1);
+  c.piece.to = c.piece.from + random_direction(random) * c.length;
+  c.piece.radius_from = 1;
+  c.piece.radius_to = random.between(0, 1) < 0.3 ? 1 : exp(random.between(-3, 0));
+  if (random.between(0, 1) < 0.5) std::swap(c.piece.radius_from, c.piece.radius_to);
+  c.distance = c.length * exp(random.between(-1.6, 2.3));
+  const Vec3d axis = (c.piece.to - c.piece.from) / c.length, out = random_direction(random);
+  const Vec3d end = dot(out, axis) > 0 ? c.piece.to : c.piece.from;
+  if (random.between(0, 1) < 0.6) {
+    c.p = end + out * c.distance;
+  } else {
+    const Vec3d across = normalize(cross(axis, out));
+    c.p = lerp(c.piece.from, c.piece.to, random.between(0, 1)) + across * c.distance;
+  }
+  return c;
+}
+
+struct Sums {
+  double f = 0;
+  Vec3d g{};
+};
+
+Sums by_rule(const PieceCase& c, int nodes) {
+  const GaussNodes rule = gauss_legendre(nodes);
+  const int n = c.degree;
+  Sums s;
+  for (std::size_t i = 0; i < rule.positions.size(); ++i) {
+    const Vec3d v = c.p - lerp(c.piece.from, c.piece.to, rule.positions[i]);
+    const double radius = c.piece.radius_from + (c.piece.radius_to - c.piece.radius_from) * rule.positions[i];
+    const double d = length(v), w = rule.weights[i] * c.length / curve_normalisation(n);
+    s.f += w * integer_power(radius, n - 1) / integer_power(d, n);
+    s.g += v * (-n * w * integer_power(radius, n) / integer_power(d, n + 2));
+  }
+  return s;
+}
+
+TEST(Quadrature, BoundHoldsForAnyPieceAndPlace) {
+  Random random(11);
+  std::vector<double> tightness;  // true error over bound, where the error is above rounding
+  for (int i = 0; i < 40000; ++i) {
+    const int degree = random.whole(3, 7), nodes = random.whole(1, max_gauss_nodes);
+    const PieceCase c = random_piece(random, degree);
+    const double slope = std::fabs(c.piece.radius_to - c.piece.radius_from) / c.length;
+    const double radius = std::max(c.piece.radius_from, c.piece.radius_to);
+    const auto bound = GaussError(degree).bound(nodes, c.mass(), radius, slope, c.length, c.distance * (1 - 1e-12));
+    const SkeletonSample exact = segment_field<Derivatives::ScaleInvariant>(c.piece, c.p, degree);
+    const Sums sums = by_rule(c, nodes);
+    const double f_error = std::fabs(sums.f - exact.value), g_error = length(sums.g - exact.si_gradient);
+    const double f_rounding = 1e-12 * exact.value, g_rounding = 1e-12 * degree * exact.value * radius / c.distance;
+    ASSERT_LE(f_error, bound.field + f_rounding) << "case " << i << " n=" << degree << " nodes " << nodes;
+    ASSERT_LE(g_error, bound.gradient + g_rounding) << "case " << i << " n=" << degree << " nodes " << nodes;
+    if (f_error > 10 * f_rounding) tightness.push_back(f_error / bound.field);
+  }
+  ASSERT_GT(tightness.size(), 10000U);
+  std::sort(tightness.begin(), tightness.end());
+  std::cout << "  error / bound: largest " << tightness.back() << ", median " << tightness[tightness.size() / 2]
+            << ", of " << tightness.size() << '\n';
+  EXPECT_GT(tightness.back(), 0.05) << "the bound serves nobody";
+}
+
+}  // namespace
+}  // namespace marrow::test

@@ -1,0 +1,74 @@
+// Blends of a few random points and segments, as the laws of tracing want them.
+#pragma once
+
+#include <array>
+#include <iomanip>
+#include <numbers>
+#include <sstream>
+#include <string>
+
+#include "field/blend/contact.h"
+#include "tests/field/random.h"
+
+namespace marrow::test {
+
+/// A blend's setting: what the laws are held for.
+struct Setting {
+  int degree = 4;
+  double alpha = 0;
+  bool cavity = true;
+  Projection projection = Projection::Paper;
+};
+
+inline std::string name_of(const Setting& s) {
+  std::ostringstream out;
+  out << "n=" << s.degree << " alpha=" << std::setprecision(4) << s.alpha << (s.cavity ? "" : " no cavity")
+      << (s.projection == Projection::Exact ? " exact" : "");
+  return out.str();
+}
+
+inline Vec3d random_direction(Random& random) {
+  for (;;) {
+    const Vec3d v = random.vector(1);
+    const double l = length(v);
+    if (l > 0.05 && l <= 1) return v / l;
+  }
+}
+
+inline Vec3d random_in(Random& random, const Box3& box) {
+  const double x = random.between(box.lower.x, box.upper.x), y = random.between(box.lower.y, box.upper.y);
+  return {x, y, random.between(box.lower.z, box.upper.z)};
+}
+
+/// `count` skeletons within 1.5 of the origin: a third are points, one in three continues the one before it as a
+/// joint, radii from 0.1 to 0.5, tapered or not.
+inline BlendField random_scene(Random& random, const Setting& setting, int count) {
+  BlendField blend;
+  blend.degree = setting.degree;
+  blend.alpha = setting.alpha;
+  blend.cavity = setting.cavity;
+  blend.projection = setting.projection;
+  for (int i = 0; i < count; ++i) {
+    if (i % 3 == 2) {
+      const Vec3d at = random.vector(1.5);
+      blend.points.add({at, random.between(0.15, 0.5)}, {});
+      continue;
+    }
+    SegmentSkeleton s{.from = random.vector(1.5), .to = random.vector(1.5)};
+    s.radius_from = random.between(0.1, 0.4);
+    if (i % 3 == 1) {
+      s.from = blend.segments.skeletons.back().to;
+      s.radius_from = blend.segments.skeletons.back().radius_to;
+    }
+    s.radius_to = random.between(0, 1) < 0.4 ? s.radius_from : random.between(0.1, 0.4);
+    blend.segments.add(s, {});
+  }
+  return blend;
+}
+
+/// The angles at which rays are tested.
+inline std::array<double, 4> traced_angles(int degree, bool cavity) {
+  return {0, contact_alpha(degree, cavity), std::numbers::pi / 2, -0.4};
+}
+
+}  // namespace marrow::test

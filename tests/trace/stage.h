@@ -1,0 +1,53 @@
+// The parts of a tracer, laid open: pieces, errors, tree and blocks of one blend.
+#pragma once
+
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "field/trace/block.h"
+#include "field/trace/cell_tree.h"
+#include "tests/trace/far_space.h"
+#include "tests/trace/random_scene.h"
+
+namespace marrow::test {
+
+/// The error budget that a tolerance of 1e-5 (or 2e-2 for the coarse level) gives one piece.
+inline ErrorBudget budget_for(double tolerance, int degree) {
+  const double share = tolerance * (degree - 1) / 400;
+  return {.field = share, .gradient = share * degree};
+}
+
+inline IsoCurve guarded(const BlendField& field, IsoCurve iso) {
+  expect_far_space_is_dropped(field, iso);
+  return iso;
+}
+
+struct Stage {
+  BlendField field;
+  Correction correction;
+  IsoCurve iso;
+  PieceCutter cutter;
+  std::vector<Piece> pieces;
+  const BlockKernels& kernels;
+  NearFar coarse, fine;
+  CellTree tree;
+  mutable BlockArena arena;
+
+  explicit Stage(BlendField f, std::string_view instruction_set = "")
+      : field(std::move(f)),
+        correction(correction_of(field)),
+        iso(guarded(field, IsoCurve(correction, field.alpha))),
+        cutter(field.degree, iso.critical_field()),
+        pieces(cutter.cut(field)),
+        kernels(*block_kernels(instruction_set)),
+        coarse(field.degree, budget_for(2e-2, field.degree), kernels),
+        fine(field.degree, budget_for(1e-5, field.degree), kernels),
+        tree(pieces, fine, iso, kernels, field.degree, {}) {}
+
+  Block::Context context() const { return {pieces, tree, cutter, coarse, fine, iso, kernels, field.degree}; }
+  Block block(std::size_t cell) const { return Block(context(), tree.cells()[cell], arena); }
+  double value(const Vec3d& p) const { return corrected_value(field, p); }
+};
+
+}  // namespace marrow::test
