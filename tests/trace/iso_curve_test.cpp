@@ -36,15 +36,22 @@ const std::vector<Case>& cases() {
     std::vector<Case> made;
     for (const Setting& s : settings()) {
       const Correction c(s.degree, s.alpha, s.cavity, s.projection);
-      made.push_back({s, c, IsoCurve(c, s.alpha)});
+      if (critical_field_of(c) < 100) made.push_back({s, c, IsoCurve(c, s.alpha)});
     }
     return made;
   }();
   return all;
 }
 
-// Settings without any f that is inside whatever G is.
+// Without cavity correction and with an angle near or below 0, no f is inside whatever G is: there is no curve then,
+// and such blends are not rendered.
 bool has_no_critical_field(const Setting& s) { return !s.cavity && s.alpha < 0.01; }
+
+TEST(IsoCurve, ExistsWhereSomeFieldIsAlwaysInside) {
+  for (const Setting& s : settings())
+    EXPECT_EQ(critical_field_of(Correction(s.degree, s.alpha, s.cavity, s.projection)) < 100, !has_no_critical_field(s))
+        << name_of(s);
+}
 
 // f mostly about the surface, sometimes tiny as it is far away or between skeletons.
 double random_field(Random& random) {
@@ -100,8 +107,6 @@ TEST(IsoCurve, TinyFieldsAreOutside) {
 
 TEST(IsoCurve, CriticalFieldIsInsideWhateverTheGradient) {
   for (const auto& [s, c, iso] : cases()) {
-    EXPECT_TRUE(std::isfinite(iso.critical_field())) << name_of(s);
-    if (has_no_critical_field(s)) continue;
     EXPECT_NEAR(c.value(iso.critical_field(), 0), 1, 1e-6) << name_of(s);
   }
 }
