@@ -23,7 +23,8 @@ class Block;
 
 struct TraceOptions {
   std::string instruction_set;  ///< "sse4", "avx2", "avx512"; empty: the best of this machine
-  /// Largest certified displacement of the traced surface from the exact one, over the local radius.
+  /// Aim for the displacement of the traced surface from the exact one, over the local radius. Error budgets come from
+  /// it; TraceStatistics::largest_error tells what is certified.
   double tolerance = 1e-5;
 };
 
