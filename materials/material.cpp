@@ -33,8 +33,10 @@ std::string known_metals() {
 Result<Material> diffuse(const DiffuseDescription& d) {
   Diagnostics problems;
   require_reflectance(problems, d.color);
+  require(problems, is_finite(d.emission) && d.emission.r >= 0 && d.emission.g >= 0 && d.emission.b >= 0,
+          "emission below zero", "each channel is 0 or more");
   if (!problems.empty()) return problems;
-  return Material(Bsdf(Diffuse(d.color)));
+  return Material(Bsdf(Diffuse(d.color)), d.emission);
 }
 
 Result<Material> conductor(const ConductorDescription& d) {

@@ -8,9 +8,11 @@
 
 namespace marrow {
 
-/// Lambert reflection; `color` is the albedo, each channel in [0, 1].
+/// Lambert reflection; `color` is the albedo, each channel in [0, 1]. `emission` is radiance that the surface sends out
+/// by itself, >= 0; it is met by rays, not sampled as a light is.
 struct DiffuseDescription {
   Rgb color{0.8};
+  Rgb emission{0};
   friend bool operator==(const DiffuseDescription&, const DiffuseDescription&) = default;
 };
 /// Rough metal of measured index (n, k). `metal` is a name of materials/metals.h.

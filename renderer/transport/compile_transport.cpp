@@ -1,4 +1,5 @@
 // From a scene's description to what the integrators see.
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -98,6 +99,7 @@ Result<RenderScene> compile_transport(const SceneDescription& scene, const Surfa
                        .camera = compile_camera(scene, problems),
                        .width = scene.film.width,
                        .height = scene.film.height};
+  compiled.has_emission = std::ranges::any_of(compiled.materials, &Material::emits);
   for (const ObjectDescription& object : scene.objects)
     if (object.material.index() >= scene.materials.size())
       problems.push_back({.where = object.where, .message = '"' + object.name + "\" has no material", .hint = {}});

@@ -19,6 +19,7 @@ namespace marrow {
 struct RenderScene {
   const Surfaces* surfaces = nullptr;
   std::vector<Material> materials;  ///< MaterialId indexes this
+  bool has_emission = false;        ///< whether any material emits
   LightSet lights;
   Camera camera;
   int width = 0, height = 0;  ///< of the whole film, pixels

@@ -41,8 +41,10 @@ inline Estimate radiance(const Integrator& integrator, const RenderScene& scene,
 
 /// A scene of one look at the origin, without a film.
 inline RenderScene scene_of(const Surfaces& surfaces, std::vector<Material> materials, std::vector<Light> lights) {
+  const bool has_emission = std::ranges::any_of(materials, &Material::emits);
   return {.surfaces = &surfaces,
           .materials = std::move(materials),
+          .has_emission = has_emission,
           .lights = LightSet(std::move(lights), {}),
           .camera = {},
           .width = 0,

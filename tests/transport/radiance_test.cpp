@@ -31,6 +31,18 @@ TEST(Radiance, A1_ClosedSphereWithAPointLightHasAGeometricSeries) {
   expect_estimate(radiance(PathTracer(60), scene, ray, 256), 1, 1e-7);
 }
 
+TEST(Radiance, A2_ClosedEmissiveBodyIsAFurnace) {
+  const MockSurfaces furnace({{{0, 0, 0}, 1, MaterialId(0), true}});
+  for (const auto& [albedo, expected] : {std::pair{0.5, 2.0}, {0.8, 5.0}}) {
+    const RenderScene scene = scene_of(furnace, {Material(Bsdf(Diffuse(Rgb(albedo))), Rgb(1))}, {});
+    const Ray ray = ray_to({0.2, 0.1, 0}, {1, 0.5, 0.3});
+    for (const int bounces : {0, 1, 3})  // L_e (1 - rho^(n+1)) / (1 - rho), without noise while no roulette is played
+      EXPECT_NEAR(radiance(PathTracer(bounces), scene, ray, 4).mean, expected * (1 - std::pow(albedo, bounces + 1)),
+                  1e-7);
+    expect_estimate(radiance(PathTracer(400), scene, ray, 4096), expected, 1e-7);
+  }
+}
+
 TEST(Radiance, A3_WhiteBodiesInAUniformSkyCannotBeSeen) {
   const MockSurfaces pair({{{-0.7, 0, 0}, 1, MaterialId(0), false}, {{0.8, 0, 0.2}, 0.9, MaterialId(1), false}});
   const ComplexIndex all_reflecting{Rgb(0), Rgb(1)};
@@ -67,6 +79,17 @@ TEST(Radiance, A19_RectangleSeenFromBelowItsCorner) {
   expect_estimate(lit_by({.center = {0, 1, 0}, .normal = {0, -1, 0}, .width = 2, .height = 2, .radiance = Rgb(3)}),
                   1.5 * .554126423980, 1e-7);
   EXPECT_EQ(lit_by({.center = {0, 1, 0}, .normal = {0, 1, 0}, .width = 2, .height = 2, .radiance = Rgb(3)}).mean, 0);
+}
+
+// A sphere of radius 1 at distance 2 is a disc of 60 degrees in the sky: E = pi L (R/d)^2 cos(theta) above the horizon.
+TEST(Radiance, A16_SphereOfLightAboveTheHorizon) {
+  const double luminous = 3, facing = pi * luminous * 0.25;
+  for (const auto& [tilt, form_factor] : {std::pair{0.0, 0.25}, {60.0, 0.125}}) {
+    const SinCos t = sincos(tilt * pi / 180);
+    const SunLight disc{.direction = {t.sin, t.cos, 0}, .irradiance = Rgb(facing), .angle_deg = 60};
+    const RenderScene scene = scene_of(floor_only, {diffuse(0.5)}, {Light(Sun(disc))});
+    expect_estimate(radiance(PathTracer(1), scene, down_to_origin, 1024), 0.5 * luminous * form_factor, 1e-7);
+  }
 }
 
 TEST(Radiance, SunGivesItsIrradianceWhateverItsSize) {

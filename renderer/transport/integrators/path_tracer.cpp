@@ -20,14 +20,18 @@ struct Vertex {
       : receiver{hit.outside, hit.normal},
         frame(Frame::around(hit.normal)),
         wo(UnitVec3::unchecked(frame.to_local(-arriving.vec()))),
-        bsdf(scene.materials[hit.material.index()].bsdf_at(hit.position)) {}
+        material(scene.materials[hit.material.index()]),
+        bsdf(material.bsdf_at(hit.position)),
+        emitted(material.emitted_at(hit.position)) {}
 
   UnitVec3 to_local(const UnitVec3& w) const { return UnitVec3::unchecked(frame.to_local(w)); }
 
   Receiver receiver;
   Frame frame;
   UnitVec3 wo;
+  const Material& material;
   const Bsdf& bsdf;
+  Rgb emitted;
 };
 
 // Where a ray comes from and with what density it was drawn there; a camera ray has none.
@@ -94,10 +98,12 @@ Rgb PathTracer::radiance(const Ray& camera_ray, const std::optional<SurfaceHit>&
   Rgb throughput(1);
   Ray ray = camera_ray;
   std::optional<SurfaceHit> hit = first;
-  for (int depth = 1; hit && depth <= max_depth_; ++depth) {
+  for (int depth = 1; hit; ++depth) {
     const Vertex at(*hit, ray.direction, scene);
+    radiance += throughput * at.emitted;
+    if (depth > max_depth_) break;
     radiance += throughput * asked_light(scene, at, sampler, strategy_);
-    if (depth == max_depth_ && !scene.lights.can_be_met()) break;
+    if (depth == max_depth_ && !scene.lights.can_be_met() && !scene.has_emission) break;
 
     // Go on in a direction that the surface draws
     const auto drawn = at.bsdf.sample(at.wo, sampler.next_3d());
@@ -108,7 +114,7 @@ Rgb PathTracer::radiance(const Ray& camera_ray, const std::optional<SurfaceHit>&
 
     // A last ray matters only for light that it meets itself
     const Departure from{&at.receiver, drawn->pdf};
-    if (depth == max_depth_ && is_black(met_light(scene, ray, infinity, from, strategy_))) break;
+    if (depth == max_depth_ && !scene.has_emission && is_black(met_light(scene, ray, infinity, from, strategy_))) break;
     hit = scene.surfaces->first_hit(ray);
     radiance += throughput * met_light(scene, ray, hit ? hit->t : infinity, from, strategy_);
   }
