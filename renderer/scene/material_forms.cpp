@@ -17,7 +17,8 @@ const Table<DiffuseDescription>& diffuse_table() {
   using Diffuse = DiffuseDescription;
   static const Table<Diffuse> table(
       "diffuse", "Matt, the same from all sides.",
-      {key<Diffuse>("color", &Diffuse::color, albedo(), "part of the light that returns")});
+      {key<Diffuse>("color", &Diffuse::color, albedo(), "part of the light that returns"),
+       key<Diffuse>("emission", &Diffuse::emission, radiance(), "radiance that the surface sends out itself")});
   return table;
 }
 

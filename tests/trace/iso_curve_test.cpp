@@ -106,9 +106,7 @@ TEST(IsoCurve, TinyFieldsAreOutside) {
 }
 
 TEST(IsoCurve, CriticalFieldIsInsideWhateverTheGradient) {
-  for (const auto& [s, c, iso] : cases()) {
-    EXPECT_NEAR(c.value(iso.critical_field(), 0), 1, 1e-6) << name_of(s);
-  }
+  for (const auto& [s, c, iso] : cases()) { EXPECT_NEAR(c.value(iso.critical_field(), 0), 1, 1e-6) << name_of(s); }
 }
 
 // What the kernels read: on the line of a given u, the point at v = lower has C <= 1.
