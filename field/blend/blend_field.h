@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "field/base/id.h"
@@ -12,12 +13,13 @@
 
 namespace marrow {
 
-/// Primitives of one kind and the material of each. Invariant: materials is empty (all are the object's) or
-/// parallel to skeletons.
+/// Primitives of one kind and the material and angle of each. Invariant: materials is empty (all are the object's) or
+/// parallel to skeletons; alphas is parallel to skeletons in a blend with `alpha_per_skeleton`, else empty.
 template <class Skeleton>
 struct PrimitiveList {
   std::vector<Skeleton> skeletons;
   std::vector<MaterialId> materials;
+  std::vector<double> alphas;
 
   std::size_t size() const { return skeletons.size(); }
   bool empty() const { return skeletons.empty(); }
@@ -31,16 +33,25 @@ struct PrimitiveList {
 
 /// Polylines and skeleton graphs are flattened to segments, an isolated root of a graph to a point.
 /// A point has the same field in both skeleton models. Every radius is > 0 and every segment has length > 0.
+/// Under another kernel than the inverse one there are only points and segments, and alpha is pi/2: the reference curve
+/// of those kernels returns to 0 and cannot be inverted (field-maths 0, line 10).
 struct BlendField {
   int degree = 4;
+  KernelFamily kernel = KernelFamily::Inverse;
+  double kernel_shape = 1;            ///< Kernel::shape
   double alpha = 1.5707963267948966;  ///< resolved, radians in [-1, pi/2]; pi/2 is the plain sum
+  bool alpha_per_skeleton = false;    ///< then each primitive has its own, and `alpha` holds where all fields are 0
   bool cavity = true;
   Projection projection = Projection::Paper;
   PrimitiveList<PointSkeleton> points;
   PrimitiveList<SegmentSkeleton> segments;           ///< integral (SCALIS) model
   PrimitiveList<SegmentSkeleton> distance_segments;  ///< distance model
+  PrimitiveList<TriangleSkeleton> triangles;
+  PrimitiveList<ArcSkeleton> arcs;  ///< and circles
 
-  std::size_t size() const { return points.size() + segments.size() + distance_segments.size(); }
+  std::size_t size() const {
+    return points.size() + segments.size() + distance_segments.size() + triangles.size() + arcs.size();
+  }
 };
 
 /// Inside where corrected > 1. On a skeleton the values are infinite and the gradients 0.
@@ -49,7 +60,7 @@ struct BlendSample {
   Vec3d sum_gradient{};        ///< grad f
   Vec3d si_gradient{};         ///< sum of grad_S f_i
   double si_norm = 0;          ///< G = |si_gradient|
-  double alpha = 0;            ///< radians, as used here
+  double alpha = 0;            ///< radians, as used at p
   double corrected = 0;        ///< C(f, G)
   Vec3d corrected_gradient{};  ///< closed form   [field-maths 5, tracing 4]
 };
@@ -62,7 +73,19 @@ double corrected_value(const BlendField&, const Vec3d& p);
 template <Derivatives>
 SkeletonSample sum_of_primitives(const BlendField&, const Vec3d& p);
 
+/// With its constant alpha, which is not used when alpha is per skeleton.
 Correction correction_of(const BlendField&);
+
+/// sum f_i alpha_i / sum f_i of a blend with alpha_per_skeleton, and its gradient.   [Zanni et al. 2015, eq. 14]
+/// Where the sum is 0 or infinite: the alpha of the blend, without gradient.
+struct AlphaSample {
+  double value = 0;
+  Vec3d gradient{};
+};
+AlphaSample alpha_at(const BlendField&, const Vec3d& p);
+
+/// What of a blend the ray tracer has no bounds for, as a message; empty when it can trace all of it.
+std::string untraceable_part(const BlendField&);
 
 /// Material of the primitive with the largest f_i at p; invalid means the object's own.
 MaterialId strongest_material(const BlendField&, const Vec3d& p);

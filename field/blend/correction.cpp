@@ -99,16 +99,18 @@ Correction::Slopes Correction::projected_slopes(double f, double G) const {
   const double value = projected(f, G);
   if (projection_ == Projection::Exact) {
     const double sum = curve_.slope(value) * cos_ + sin_;
-    return {value, sin_ == 0 ? 0 : sin_ / sum, cos_ / sum};
+    // along the root of g(x) cos + x sin = G cos + f sin
+    const double dalpha = ((f - value) * cos_ + (curve_.at(value) - G) * sin_) / sum;
+    return {value, sin_ == 0 ? 0 : sin_ / sum, cos_ / sum, dalpha};
   }
   const auto [x_H, slope] = chord_to(curve_, f, G);
   const double weight = slope * cos_, sum = weight + sin_, slope_at_H = curve_.slope(x_H);
-  if (value == 0) return {0, 0, 0};
-  if (sum < guard_share * weight) return {value, -1, 2 / slope_at_H};
+  if (value == 0) return {0, 0, 0, 0};
+  if (sum < guard_share * weight) return {value, -1, 2 / slope_at_H, 0};
   // field-maths 4.5 with the terms collected, so that each is positive for alpha >= 0
   const double df = sin_ * (2 * weight + sin_ - curve_.slope(f) * cos_) / (sum * sum);
   const double dG = (weight * (weight / slope_at_H) + cos_ * sin_) / (sum * sum);
-  return {value, df, dG};
+  return {value, df, dG, slope * (f - x_H) / (sum * sum)};
 }
 
 // The root of sin a (eta^3 + eta) + cos (n eta^2 - 1) = 0 with the least eta, in closed form by z = 1 / eta and
@@ -121,13 +123,15 @@ Correction::CriticalPoint Correction::critical_point(double a) const {
   if (w <= -1) {
     // alpha < 0 and M_d is nowhere so steep: its steepest point serves, z at the minimum of the cubic's outer arm
     const double eta = 1 / (k / 3 + half_width);
-    return {eta, -eta * eta * (tangent / 3 + k * tangent / (9 * half_width))};
+    const double by_k = -eta * eta * (1.0 / 3 + k / (9 * half_width));
+    return {eta, -eta * eta * (tangent / 3 + k * tangent / (9 * half_width)), by_k * a / (cos_ * cos_)};
   }
   double z = k / 3 + 2 * half_width * (w <= 1 ? cos(acos(w) / 3) : cosh(acosh(w) / 3));
   if (alpha_ >= 0) z -= cubic(z, k, n) / cubic_slope(z, k, n);
-  // k' = tangent, and d(cubic) = 0 along the root
+  // dk/da = tangent, dk/dalpha = a / cos^2, and d(cubic) = 0 along the root
   const double z_slope = tangent * (z * z + 1) / cubic_slope(z, k, n);
-  return {1 / z, -z_slope / (z * z)};
+  const double z_by_alpha = a / (cos_ * cos_) * ((z * z + 1) / cubic_slope(z, k, n));
+  return {1 / z, -z_slope / (z * z), -z_by_alpha / (z * z)};
 }
 
 // Step 1 of the cavity correction finds the curve M_d through (f, G), step 2 its critical point.
@@ -162,11 +166,15 @@ double Correction::value(double f, double G) const {
 
 // In the cavity branch C is a function of a alone: d(a^2) along f and G, times dC/da along the critical points.
 Correction::Partials Correction::partials(double f, double G) const {
-  if (const auto v = trivial(f)) return {.value = *v, .df = 1, .dG = 0, .dG_over_G = 0};
+  if (const auto v = trivial(f)) return {.value = *v, .df = 1, .dG = 0, .dG_over_G = 0, .dalpha = 0};
   const auto two = behind_critical_point(f, G);
   if (!two) {
     const Slopes s = projected_slopes(f, G);
-    return {.value = s.value, .df = s.df, .dG = s.dG, .dG_over_G = G > smallest_gradient ? s.dG / G : 0};
+    return {.value = s.value,
+            .df = s.df,
+            .dG = s.dG,
+            .dG_over_G = G > smallest_gradient ? s.dG / G : 0,
+            .dalpha = s.dalpha};
   }
   const int n = degree();
   const auto [r, c, a, critical] = *two;
@@ -178,6 +186,10 @@ Correction::Partials Correction::partials(double f, double G) const {
   const double D_f_slope = -(n - 1) * D_f * r_slope / r_D;
   const double D_G_slope = D_G * (-(n + 1) * r_slope / r_D + 1 / a + critical.eta_slope / eta);
   const double along_a = at_D.df * D_f_slope + at_D.dG * D_G_slope;
+  // alpha moves eta alone: d r_D / d eta = a^2 eta / r_D
+  const double r_by_alpha = a * a * eta / r_D * critical.eta_by_alpha;
+  const double along_alpha = at_D.df * (-(n - 1) * D_f * r_by_alpha / r_D) +
+                             at_D.dG * D_G * (-(n + 1) * r_by_alpha / r_D + critical.eta_by_alpha / eta);
   // a^2 = r^2 - w^2, w = G r^(n+1) / (2(n-1)) = c r, r = (2/f)^(1/(n-1))
   const double lift = integer_power(r, n + 1) / (2 * (n - 1));
   const double a_by_f = -r * r * (1 - (n + 1) * c * c) / ((n - 1) * f * a);
@@ -185,7 +197,8 @@ Correction::Partials Correction::partials(double f, double G) const {
   return {.value = at_D.value,
           .df = along_a * a_by_f,
           .dG = along_a * a_by_G_over_G * G,
-          .dG_over_G = along_a * a_by_G_over_G};
+          .dG_over_G = along_a * a_by_G_over_G,
+          .dalpha = at_D.dalpha + along_alpha};
 }
 
 }  // namespace marrow

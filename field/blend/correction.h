@@ -31,6 +31,7 @@ class Correction {
     /// dC/dG / G, so that d(corrected) = df * grad f + dG_over_G * J^T grad_S f. Finite at G = 0 with cavity
     /// (there the corrected field is smooth); without, 0 is given at G = 0, where no derivative exists.
     double dG_over_G = 0;
+    double dalpha = 0;  ///< 0 where C = f
   };
   Partials partials(double f, double G) const;
 
@@ -45,12 +46,13 @@ class Correction {
 
  private:
   struct Slopes {
-    double value, df, dG;
+    double value, df, dG, dalpha;
   };
   /// The critical point D of the curve M_d of two equal skeletons 2 a apart, seen from a.   [field-maths 5]
   struct CriticalPoint {
     double eta;        ///< height / a
     double eta_slope;  ///< d eta / da
+    double eta_by_alpha;
   };
   struct TwoSkeletons;
 

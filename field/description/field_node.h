@@ -1,6 +1,7 @@
 // A field as its author wrote it: a tree of nodes in one array. Plain data, comparable, no evaluation.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,10 +33,37 @@ struct SegmentSkeleton {
   double radius_from = 1, radius_to = 1;
   friend bool operator==(const SegmentSkeleton&, const SegmentSkeleton&) = default;
 };
+/// Radius linear over the triangle.
+struct TriangleSkeleton {
+  std::array<Vec3d, 3> vertices;
+  std::array<double, 3> radii{1, 1, 1};
+  friend bool operator==(const TriangleSkeleton&, const TriangleSkeleton&) = default;
+};
+/// center + major (cos angle axis1 + sin angle axis2), begin <= angle <= end in radians, at most one turn; a whole turn
+/// is a circle. The axes are orthonormal. Radius linear in the angle.
+struct ArcSkeleton {
+  Vec3d center, axis1{1, 0, 0}, axis2{0, 1, 0};
+  double major = 1;
+  double begin = 0, end = 6.283185307179586;
+  double radius_from = 1, radius_to = 1;
+  friend bool operator==(const ArcSkeleton&, const ArcSkeleton&) = default;
+};
 struct PolylineSkeleton {
   std::vector<Vec3d> points;
   std::vector<double> radii;  ///< one for each point
   friend bool operator==(const PolylineSkeleton&, const PolylineSkeleton&) = default;
+};
+enum class Subdivision { Chaikin, Cubic };
+/// A control polyline that is refined `levels` times (field/skeleton/subdivision_curve.h).
+struct CurveSkeleton {
+  /// Each level doubles the points: 12 levels place them closer than any picture shows.
+  static constexpr int max_levels = 12;
+  std::vector<Vec3d> points;
+  std::vector<double> radii;  ///< one for each point
+  Subdivision subdivision = Subdivision::Chaikin;
+  int levels = 4;             ///< level of detail; 0 is the control polyline itself
+  std::vector<int> sticking;  ///< indices of points through which the curve passes as it is; both ends always do
+  friend bool operator==(const CurveSkeleton&, const CurveSkeleton&) = default;
 };
 /// A forest of nodes, each joined to its parent by a segment. Built by the SWC reader.
 struct SkeletonGraph {
@@ -50,29 +78,37 @@ using SharedSkeletonGraph = std::shared_ptr<const SkeletonGraph>;
 
 /// What a blend sums. A root without children contributes a point.
 struct Primitive {
-  std::variant<PointSkeleton, SegmentSkeleton, PolylineSkeleton, SharedSkeletonGraph> skeleton;
+  std::variant<PointSkeleton, SegmentSkeleton, PolylineSkeleton, CurveSkeleton, SharedSkeletonGraph, TriangleSkeleton,
+               ArcSkeleton>
+      skeleton;
   std::optional<SkeletonModel> model;  ///< default: the blend's
-  std::optional<double> alpha;         ///< used by alpha: per_skeleton
+  std::optional<double> alpha;         ///< radians in [-1, pi/2], used by AlphaPerSkeleton
   MaterialId material;                 ///< invalid: the object's
 };
 
-/// Degree n >= 3 of the kernel family; the degree of a point is n-1, of a curve n (field-maths sec. 1).
-struct InverseKernel {
+enum class KernelFamily { Inverse, Cauchy, Compact };
+/// Degree n >= 3 of the kernel family; the degree of a point is n-1, of a curve n (field-maths sec. 1; the other way
+/// round for the compact kernel).
+struct Kernel {
+  KernelFamily family = KernelFamily::Inverse;
   int degree = 4;
-  friend bool operator==(const InverseKernel&, const InverseKernel&) = default;
+  double shape = 1;  ///< Cauchy: the scale s > 0; compact: the support R > 1, in radii; inverse: not used
+  friend bool operator==(const Kernel&, const Kernel&) = default;
 };
 
 /// Projection angle of the correction operator (Zanni et al. 2015, sec. 4).
 struct AlphaContact {};  ///< the value at which two equal skeletons blend exactly when they touch
 struct AlphaSum {};      ///< pi/2: the plain sum
-using Alpha = std::variant<AlphaContact, AlphaSum, double>;  ///< or radians, in [-1, pi/2]
+/// Mean of the primitives' own angles, weighted by their fields (eq. 14); contact for those without.
+struct AlphaPerSkeleton {};
+using Alpha = std::variant<AlphaContact, AlphaSum, double, AlphaPerSkeleton>;  ///< or radians, in [-1, pi/2]
 
 enum class Projection { Paper, Exact };
 
 /// n-ary blend with topology control (Zanni, Cani, Gleicher 2015); iso-value 1.
 /// Children: primitives, or transforms (similarities) of primitives.
 struct Blend {
-  InverseKernel kernel;
+  Kernel kernel;
   Alpha alpha = AlphaContact{};
   bool cavity = true;
   Projection projection = Projection::Paper;

@@ -1,6 +1,8 @@
 // The inverse kernel family of degree n: degrees, normalisation and the reference curve.
 #pragma once
 
+#include <numbers>
+
 namespace marrow {
 
 /// Supported degrees n of a family. Below 3 integrals diverge (Zanni et al. 2015, sec. 4.1);
@@ -14,6 +16,9 @@ constexpr int kernel_degree(int family_degree, int dimension) { return family_de
 /// N of a curve: the integral of k_n(d / radius) / radius along an infinite line at d = radius 1,
 /// sqrt(pi) Gamma((n-1)/2) / Gamma(n/2). (N of a point is 1.)
 double curve_normalisation(int family_degree);
+
+/// N of a surface: the same over an infinite plane, 2 pi / (n-1).
+constexpr double surface_normalisation(int family_degree) { return 2 * std::numbers::pi / (family_degree - 1); }
 
 /// The curve |grad_S f| = g(f) on which every isolated infinite skeleton lies.
 /// f = x^-(n-1) and |grad_S f| = (n-1) x^-n with x = d / radius, hence g(f) = (n-1) f^(n/(n-1)).

@@ -47,7 +47,7 @@ double lane_sum(const std::array<double, Count>& terms, const std::array<double,
 
 // Gauss-Legendre over [begin, begin + length] of the line.
 template <Derivatives Order, std::size_t Count>
-void add_rule(const SegmentView& view, double begin, double length, int n, SegmentMoments& sum) {
+void add_rule(const SegmentView& view, double begin, double length, int n, int dimension, SegmentMoments& sum) {
   constexpr auto& rule = gauss_rule<Count>;
   const bool even = n % 2 == 0;
   std::array<double, Count> t, tau, inverse, ratio, term;
@@ -64,6 +64,8 @@ void add_rule(const SegmentView& view, double begin, double length, int n, Segme
     for (std::size_t i = 0; i < Count; ++i) term[i] = rule.weights[i] * length * std::sqrt(inverse[i]);
   for (int k = 0; k < (n - 1) / 2; ++k)
     for (std::size_t i = 0; i < Count; ++i) term[i] *= ratio[i];
+  if (dimension == 2)
+    for (std::size_t i = 0; i < Count; ++i) term[i] /= tau[i];
   sum.value += lane_sum(term);
   for (std::size_t i = 0; i < Count; ++i) term[i] *= inverse[i];
   if constexpr (Order >= Derivatives::First) {
@@ -84,26 +86,27 @@ void add_rule(const SegmentView& view, double begin, double length, int n, Segme
 
 // The panel [begin, begin + length] whose distance from the point is `distance` >= 0.8 length.
 template <Derivatives Order>
-void add_panel(const SegmentView& view, double begin, double length, double distance, int n, SegmentMoments& sum) {
+void add_panel(const SegmentView& view, double begin, double length, double distance, int n, int dimension,
+               SegmentMoments& sum) {
   if (distance >= distance_for_6 * length && holds_radius_power<6>(view, n))
-    add_rule<Order, 6>(view, begin, length, n, sum);
+    add_rule<Order, 6>(view, begin, length, n, dimension, sum);
   else if (distance >= distance_for_8 * length && holds_radius_power<8>(view, n))
-    add_rule<Order, 8>(view, begin, length, n, sum);
+    add_rule<Order, 8>(view, begin, length, n, dimension, sum);
   else if (distance >= distance_for_12 * length && holds_radius_power<12>(view, n))
-    add_rule<Order, 12>(view, begin, length, n, sum);
-  else add_rule<Order, 20>(view, begin, length, n, sum);
+    add_rule<Order, 12>(view, begin, length, n, dimension, sum);
+  else add_rule<Order, 20>(view, begin, length, n, dimension, sum);
 }
 
 // Panels from `near` to `far`, where |t| grows; each is as long as its distance from the point allows.
 template <Derivatives Order>
-void add_graded_panels(const SegmentView& view, double near, double far, int n, SegmentMoments& sum) {
+void add_graded_panels(const SegmentView& view, double near, double far, int n, int dimension, SegmentMoments& sum) {
   const double direction = far < near ? -1 : 1;
   double begin = near, rest = std::fabs(far - near);
   while (rest > 0) {
     const double distance = std::sqrt(begin * begin + view.h_squared);
     const double length = std::min(rest, distance / distance_for_20);
-    if (direction > 0) add_panel<Order>(view, begin, length, distance, n, sum);
-    else add_panel<Order>(view, begin - length, length, distance, n, sum);
+    if (direction > 0) add_panel<Order>(view, begin, length, distance, n, dimension, sum);
+    else add_panel<Order>(view, begin - length, length, distance, n, dimension, sum);
     begin += direction * length;
     rest -= length;
   }
@@ -143,23 +146,23 @@ class RadiusPower {
 }  // namespace
 
 template <Derivatives Order>
-SegmentMoments segment_moments_by_panels(const SegmentView& view, int n) {
+SegmentMoments segment_moments_by_panels(const SegmentView& view, int n, int dimension) {
   SegmentMoments sum;
   if (foot_is_inside(view)) {
-    add_graded_panels<Order>(view, 0, view.t1, n, sum);
-    add_graded_panels<Order>(view, 0, view.t2, n, sum);
+    add_graded_panels<Order>(view, 0, view.t1, n, dimension, sum);
+    add_graded_panels<Order>(view, 0, view.t2, n, dimension, sum);
   } else if (view.t1 >= 0) {
-    add_graded_panels<Order>(view, view.t1, view.t2, n, sum);
+    add_graded_panels<Order>(view, view.t1, view.t2, n, dimension, sum);
   } else {
-    add_graded_panels<Order>(view, view.t2, view.t1, n, sum);
+    add_graded_panels<Order>(view, view.t2, view.t1, n, dimension, sum);
   }
   return sum;
 }
 
 template <Derivatives Order>
-SegmentMoments segment_moments_by_recurrence(const SegmentView& view, int n) {
+SegmentMoments segment_moments_by_recurrence(const SegmentView& view, int n, int dimension) {
   const PowerIntegrals J(view.t1, view.t2, view.h_squared, Order == Derivatives::Second ? n + 4 : n + 2);
-  const RadiusPower plain(view, n - 1), raised(view, n);
+  const RadiusPower plain(view, n - dimension), raised(view, n - dimension + 1);
   SegmentMoments sum;
   sum.value = plain.moment(J, 0, n);
   if constexpr (Order >= Derivatives::First)
@@ -171,21 +174,22 @@ SegmentMoments segment_moments_by_recurrence(const SegmentView& view, int n) {
 }
 
 template <Derivatives Order>
-SegmentMoments segment_moments(const SegmentView& view, int n) {
+SegmentMoments segment_moments(const SegmentView& view, int n, int dimension) {
   const double distance = distance_to(view);
   if (distance >= distance_for_20 * view.length()) {
     SegmentMoments sum;
-    add_panel<Order>(view, view.t1, view.length(), distance, n, sum);
+    add_panel<Order>(view, view.t1, view.length(), distance, n, dimension, sum);
     return sum;
   }
-  if (foot_is_inside(view) && n <= max_closed_form_degree) return segment_moments_by_recurrence<Order>(view, n);
-  return segment_moments_by_panels<Order>(view, n);
+  if (foot_is_inside(view) && n <= max_closed_form_degree)
+    return segment_moments_by_recurrence<Order>(view, n, dimension);
+  return segment_moments_by_panels<Order>(view, n, dimension);
 }
 
-template SegmentMoments segment_moments<Derivatives::ScaleInvariant>(const SegmentView&, int);
-template SegmentMoments segment_moments<Derivatives::First>(const SegmentView&, int);
-template SegmentMoments segment_moments<Derivatives::Second>(const SegmentView&, int);
-template SegmentMoments segment_moments_by_panels<Derivatives::Second>(const SegmentView&, int);
-template SegmentMoments segment_moments_by_recurrence<Derivatives::Second>(const SegmentView&, int);
+template SegmentMoments segment_moments<Derivatives::ScaleInvariant>(const SegmentView&, int, int);
+template SegmentMoments segment_moments<Derivatives::First>(const SegmentView&, int, int);
+template SegmentMoments segment_moments<Derivatives::Second>(const SegmentView&, int, int);
+template SegmentMoments segment_moments_by_panels<Derivatives::Second>(const SegmentView&, int, int);
+template SegmentMoments segment_moments_by_recurrence<Derivatives::Second>(const SegmentView&, int, int);
 
 }  // namespace marrow

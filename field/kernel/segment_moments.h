@@ -17,8 +17,9 @@ struct SegmentView {
   double length() const { return t2 - t1; }
 };
 
-/// M(e, m, j) = int tau^e t^j d^-m dt with d^2 = t^2 + h^2:
-///   value M(n-1, n, 0);  first[j] M(n-1, n+2, j);  si[j] M(n, n+2, j);  second[j] M(n, n+4, j).
+/// M(e, m, j) = int tau^e t^j d^-m dt with d^2 = t^2 + h^2, for a kernel of degree m and a skeleton of dimension D
+/// (1: the segment itself, 2: a surface of which it is a line), e = m - D:
+///   value M(e, m, 0);  first[j] M(e, m+2, j);  si[j] M(e+1, m+2, j);  second[j] M(e+1, m+4, j).
 struct SegmentMoments {
   double value = 0;
   double first[2] = {0, 0};
@@ -30,12 +31,12 @@ struct SegmentMoments {
 /// one Gauss-Legendre rule; where the foot lies inside, closed forms; else Gauss-Legendre panels that grow with
 /// their distance from the point.   Precondition: distance to the segment > 0.
 template <Derivatives>
-SegmentMoments segment_moments(const SegmentView&, int family_degree);
+SegmentMoments segment_moments(const SegmentView&, int degree, int dimension = 1);
 
 /// The same by either method alone, wherever the point lies. For tests of one against the other.
 template <Derivatives>
-SegmentMoments segment_moments_by_panels(const SegmentView&, int family_degree);
+SegmentMoments segment_moments_by_panels(const SegmentView&, int degree, int dimension = 1);
 template <Derivatives>
-SegmentMoments segment_moments_by_recurrence(const SegmentView&, int family_degree);
+SegmentMoments segment_moments_by_recurrence(const SegmentView&, int degree, int dimension = 1);
 
 }  // namespace marrow

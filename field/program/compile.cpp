@@ -12,6 +12,7 @@
 #include "field/blend/contact.h"
 #include "field/program/field_program.h"
 #include "field/program/validate.h"
+#include "field/skeleton/subdivision_curve.h"
 
 namespace marrow {
 namespace {
@@ -49,10 +50,15 @@ Blend blend_of(FieldNodeId primitive) {
 // Adds the skeleton of one primitive to a blend, mapped by a similarity.
 class Flattener {
  public:
-  Flattener(BlendField& field, const Affine& map, double scale, SkeletonModel model, MaterialId material)
-      : field_(field), map_(map), scale_(scale), model_(model), material_(material) {}
+  Flattener(BlendField& field, const Affine& map, double scale, SkeletonModel model, const Primitive& primitive)
+      : field_(field),
+        map_(map),
+        scale_(scale),
+        model_(primitive.model.value_or(model)),
+        material_(primitive.material),
+        alpha_(primitive.alpha.value_or(field.alpha)) {}
 
-  void operator()(const PointSkeleton& s) { field_.points.add({map_.point(s.at), s.radius * scale_}, material_); }
+  void operator()(const PointSkeleton& s) { add(field_.points, PointSkeleton{map_.point(s.at), s.radius * scale_}); }
 
   // A segment of no length has no integral; its scaled distance is that of its larger end.
   void operator()(const SegmentSkeleton& s) {
@@ -66,6 +72,8 @@ class Flattener {
     for (std::size_t i = 1; i < s.points.size(); ++i)
       add_segment(s.points[i - 1], s.points[i], s.radii[i - 1], s.radii[i]);
   }
+
+  void operator()(const CurveSkeleton& s) { (*this)(subdivide(s)); }
 
   void operator()(const SharedSkeletonGraph& shared) {
     const SkeletonGraph& s = *shared;
@@ -84,15 +92,39 @@ class Flattener {
     }
   }
 
+  void operator()(const TriangleSkeleton& s) {
+    TriangleSkeleton mapped = s;
+    for (Vec3d& vertex : mapped.vertices) vertex = map_.point(vertex);
+    for (double& radius : mapped.radii) radius *= scale_;
+    add(field_.triangles, mapped);
+  }
+
+  void operator()(const ArcSkeleton& s) {
+    ArcSkeleton mapped = s;
+    mapped.center = map_.point(s.center);
+    mapped.axis1 = map_.vector(s.axis1) / scale_;
+    mapped.axis2 = map_.vector(s.axis2) / scale_;
+    mapped.major *= scale_;
+    mapped.radius_from *= scale_;
+    mapped.radius_to *= scale_;
+    add(field_.arcs, mapped);
+  }
+
+  SkeletonModel model() const { return model_; }
   std::size_t without_length() const { return without_length_; }
 
  private:
+  template <class Skeleton>
+  void add(PrimitiveList<Skeleton>& list, const Skeleton& mapped) {
+    list.add(mapped, material_);
+    if (field_.alpha_per_skeleton) list.alphas.push_back(alpha_);
+  }
   PrimitiveList<SegmentSkeleton>& segments() {
     return model_ == SkeletonModel::Distance ? field_.distance_segments : field_.segments;
   }
   void add_segment(const Vec3d& from, const Vec3d& to, double radius_from, double radius_to) {
     const SegmentSkeleton mapped{map_.point(from), map_.point(to), radius_from * scale_, radius_to * scale_};
-    if (length(mapped.to - mapped.from) > 0) segments().add(mapped, material_);
+    if (length(mapped.to - mapped.from) > 0) add(segments(), mapped);
     else ++without_length_;
   }
 
@@ -101,6 +133,7 @@ class Flattener {
   double scale_;
   SkeletonModel model_;
   MaterialId material_;
+  double alpha_;
   std::size_t without_length_ = 0;
 };
 
@@ -148,10 +181,14 @@ class Compiler {
   BlendField empty_field(const Blend& blend) {
     BlendField field;
     field.degree = blend.kernel.degree;
+    field.kernel = blend.kernel.family;
+    field.kernel_shape = blend.kernel.shape;
     field.alpha =
         std::visit(Overloaded{[&](AlphaContact) { return contact_.of(blend); },
+                              [&](AlphaPerSkeleton) { return contact_.of(blend); },
                               [](AlphaSum) { return std::numbers::pi / 2; }, [](double radians) { return radians; }},
                    blend.alpha);
+    field.alpha_per_skeleton = std::holds_alternative<AlphaPerSkeleton>(blend.alpha);
     field.cavity = blend.cavity;
     field.projection = blend.projection;
     return field;
@@ -199,8 +236,21 @@ class Compiler {
   void add_primitive(const Primitive& primitive, const Placement& child, SkeletonModel model, BlendField& field) {
     // Each map on the way is a similarity, so that any column has the scale of all together.
     const double scale = length(child.from_node.columns[0]);
-    Flattener flatten(field, child.from_node, scale, primitive.model.value_or(model), primitive.material);
+    Flattener flatten(field, child.from_node, scale, model, primitive);
     std::visit(flatten, primitive.skeleton);
+    const bool is_integral_only = std::holds_alternative<TriangleSkeleton>(primitive.skeleton) ||
+                                  std::holds_alternative<ArcSkeleton>(primitive.skeleton);
+    if (is_integral_only && flatten.model() == SkeletonModel::Distance)
+      report(child.node, "`model: distance` is not there for triangles, circles and arcs",
+             "say `model: integral` here");
+    const bool is_inverse_only = is_integral_only || (flatten.model() == SkeletonModel::Distance &&
+                                                      !std::holds_alternative<PointSkeleton>(primitive.skeleton));
+    if (is_inverse_only && field.kernel != KernelFamily::Inverse)
+      report(child.node, "this skeleton is not there for the kernels cauchy and compact",
+             "they take points and, with `model: integral`, segments, polylines, curves and skeletons");
+    if (field.alpha_per_skeleton && field.projection == Projection::Exact && primitive.alpha && *primitive.alpha < 0)
+      report(child.node, "an alpha below 0 with the exact projection",
+             "below alpha = 0 only `projection: paper` is defined");
     if (flatten.without_length() == 0 || reported_[child.node.index()]) return;
     reported_[child.node.index()] = true;
     warnings_.push_back({.where = description_[child.node].where,

@@ -1,6 +1,7 @@
 // One check for each kind of node.
 #include "field/program/validate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -13,6 +14,7 @@
 #include "field/base/overloaded.h"
 #include "field/base/result.h"
 #include "field/kernel/inverse_family.h"
+#include "field/skeleton/subdivision_curve.h"
 
 namespace marrow {
 namespace {
@@ -57,14 +59,54 @@ void check(const SegmentSkeleton& segment, Findings& findings) {
   else findings.check_radii(radii);
 }
 
-void check(const PolylineSkeleton& polyline, Findings& findings) {
-  if (polyline.points.size() < 2)
-    findings.add(fmt::format("a polyline of {} points", polyline.points.size()), "a polyline has at least 2 points");
-  if (polyline.points.size() != polyline.radii.size())
-    findings.add(fmt::format("{} points but {} radii", polyline.points.size(), polyline.radii.size()),
+// What has a list of points and one of radii.
+void check_line(const auto& line, const std::string& kind, Findings& findings) {
+  if (line.points.size() < 2)
+    findings.add(fmt::format("a {} of {} points", kind, line.points.size()),
+                 fmt::format("a {} has at least 2 points", kind));
+  if (line.points.size() != line.radii.size())
+    findings.add(fmt::format("{} points but {} radii", line.points.size(), line.radii.size()),
                  "give one radius for each point");
-  findings.check_positions(polyline.points);
-  findings.check_radii(polyline.radii);
+  findings.check_positions(line.points);
+  findings.check_radii(line.radii);
+}
+
+void check(const PolylineSkeleton& polyline, Findings& findings) { check_line(polyline, "polyline", findings); }
+
+// Three vertices in one line leave no more than rounding of the area of a square.
+void check(const TriangleSkeleton& triangle, Findings& findings) {
+  const auto& [a, b, c] = triangle.vertices;
+  findings.check_positions(triangle.vertices);
+  findings.check_radii(triangle.radii);
+  const double longest = std::max({length(b - a), length(c - b), length(a - c)});
+  if (!(length(cross(b - a, c - a)) > 1e-12 * longest * longest))
+    findings.add("a triangle without area", "its vertices must not lie on one line");
+}
+
+void check(const ArcSkeleton& arc, Findings& findings) {
+  const double radii[] = {arc.major, arc.radius_from, arc.radius_to};
+  findings.check_positions({&arc.center, 1});
+  findings.check_radii(radii);
+  const double skew = std::max({std::fabs(length_squared(arc.axis1) - 1), std::fabs(length_squared(arc.axis2) - 1),
+                                std::fabs(dot(arc.axis1, arc.axis2))});
+  if (!(skew < 1e-9)) findings.add("the axes of an arc are not orthonormal", "give two unit vectors at right angles");
+  if (!(arc.end > arc.begin && arc.end - arc.begin < 2 * std::numbers::pi * (1 + 1e-12)))
+    findings.add(fmt::format("an arc from {} to {} radians", arc.begin, arc.end),
+                 "an arc has a positive angle of at most one turn");
+}
+
+void check(const CurveSkeleton& curve, Findings& findings) {
+  check_line(curve, "curve", findings);
+  if (curve.levels < 0 || curve.levels > CurveSkeleton::max_levels)
+    return findings.add(fmt::format("{} levels of subdivision", curve.levels),
+                        fmt::format("levels are a whole number from 0 to {}", CurveSkeleton::max_levels));
+  if (curve.points.size() > max_curve_points >> curve.levels)
+    findings.add(fmt::format("a curve of {} points, doubled {} times", curve.points.size(), curve.levels),
+                 "use fewer levels");
+  for (const int i : curve.sticking)
+    if (i < 0 || static_cast<std::size_t>(i) >= curve.points.size())
+      return findings.add(fmt::format("the sticking joint {} of a curve of {} points", i, curve.points.size()),
+                          "joints are counted from 0");
 }
 
 void check(const SharedSkeletonGraph& graph, Findings& findings) {
@@ -87,16 +129,36 @@ void check(const SharedSkeletonGraph& graph, Findings& findings) {
   findings.check_radii(graph->radii);
 }
 
+void check_alpha(double alpha, Findings& findings) {
+  if (!(alpha >= smallest_alpha && alpha <= largest_alpha))
+    findings.add(fmt::format("alpha {} is out of range", alpha),
+                 "alpha is from -1 to pi/2 radians, or contact, or sum, or per_skeleton");
+}
+
+void check(const Primitive& primitive, Findings& findings) {
+  std::visit([&](const auto& skeleton) { check(skeleton, findings); }, primitive.skeleton);
+  if (primitive.alpha) check_alpha(*primitive.alpha, findings);
+}
+
+void check_shape(const Kernel& kernel, Findings& findings) {
+  const double least = kernel.family == KernelFamily::Compact ? 1 : 0;
+  if (kernel.family != KernelFamily::Inverse && !(kernel.shape > least && std::isfinite(kernel.shape)))
+    findings.add(fmt::format("a kernel of {} {}", least == 0 ? "scale" : "support", kernel.shape),
+                 "the scale of a Cauchy kernel is above 0, the support of a compact one above 1 radius");
+}
+
 void check(const Blend& blend, Findings& findings) {
   const int degree = blend.kernel.degree;
   if (degree < min_kernel_degree || degree > max_kernel_degree)
     findings.add(fmt::format("kernel degree {} is out of range", degree),
                  fmt::format("the degree is a whole number from {} to {}", min_kernel_degree, max_kernel_degree));
+  check_shape(blend.kernel, findings);
+  if (blend.kernel.family != KernelFamily::Inverse && !std::holds_alternative<AlphaSum>(blend.alpha))
+    findings.add("a kernel that blends only as the plain sum",
+                 "write `alpha: sum`; topology control needs the kernel `inverse`");
   if (const double* alpha = std::get_if<double>(&blend.alpha)) {
-    if (!(*alpha >= smallest_alpha && *alpha <= largest_alpha))
-      findings.add(fmt::format("alpha {} is out of range", *alpha),
-                   "alpha is from -1 to pi/2 radians, or contact, or sum");
-    else if (*alpha < 0 && blend.projection == Projection::Exact)
+    check_alpha(*alpha, findings);
+    if (*alpha >= smallest_alpha && *alpha < 0 && blend.projection == Projection::Exact)
       findings.add(fmt::format("alpha {} with the exact projection", *alpha),
                    "below alpha = 0 only `projection: paper` is defined");
   }
@@ -130,17 +192,16 @@ Diagnostics validate(const FieldDescription& description) {
   for (std::size_t i = 0; i < description.nodes.size(); ++i) {
     const FieldNode& node = description.nodes[i];
     Findings findings(node.where, all);
-    std::visit(
-        Overloaded{[&](const Primitive& p) { std::visit([&](const auto& s) { check(s, findings); }, p.skeleton); },
-                   [&](const Transform& t) {
-                     check(t, findings);
-                     check_children({&t.of, 1}, i, findings);
-                   },
-                   [&](const auto& group) {
-                     check(group, findings);
-                     check_children(group.of, i, findings);
-                   }},
-        node.what);
+    std::visit(Overloaded{[&](const Primitive& p) { check(p, findings); },
+                          [&](const Transform& t) {
+                            check(t, findings);
+                            check_children({&t.of, 1}, i, findings);
+                          },
+                          [&](const auto& group) {
+                            check(group, findings);
+                            check_children(group.of, i, findings);
+                          }},
+               node.what);
   }
   if (!description.root.valid() || description.root.index() >= description.nodes.size())
     all.push_back(failure("a field without a root"));

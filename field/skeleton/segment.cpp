@@ -1,6 +1,6 @@
 // Field of a segment of linear radius: its moments put together with directions.
 #include "field/kernel/inverse_family.h"
-#include "field/kernel/segment_moments.h"
+#include "field/skeleton/moment_sample.h"
 #include "field/skeleton/skeletons.h"
 
 namespace marrow {
@@ -44,20 +44,8 @@ SkeletonSample segment_field(const SegmentSkeleton& segment, const Vec3d& p, int
   const auto [u, hv, view] = frame_of(segment, p, length);
   if (view.h_squared == 0 && view.t1 <= 0 && view.t2 >= 0) return SkeletonSample::on_skeleton();
   const SegmentMoments m = segment_moments<Order>(view, n);
-  const double scale = 1 / curve_normalisation(n), slope = -n * scale;
-  SkeletonSample s;
-  s.value = scale * m.value;
-  if (!(s.value <= field_ceiling)) return SkeletonSample::on_skeleton();
-  if constexpr (Order >= Derivatives::First) s.gradient = (hv * m.first[0] - u * m.first[1]) * slope;
-  s.si_gradient = (hv * m.si[0] - u * m.si[1]) * slope;
-  if constexpr (Order >= Derivatives::Second) {
-    // slope (I si_0 - (n+2) sum of q q^T weights, q = hv - t u), the outer product split at its left factor
-    const double k = -(n + 2) * slope;
-    s.si_jacobian = Matrix3::scaled_identity(slope * m.si[0]) +
-                    Matrix3::outer(hv, hv * (k * m.second[0]) - u * (k * m.second[1])) +
-                    Matrix3::outer(u, u * (k * m.second[2]) - hv * (k * m.second[1]));
-  }
-  return s;
+  const SkeletonSample s = sample_of<Order>(m, u, hv, n, 1 / curve_normalisation(n));
+  return s.value <= field_ceiling ? s : SkeletonSample::on_skeleton();
 }
 
 template SkeletonSample segment_field<Derivatives::ScaleInvariant>(const SegmentSkeleton&, const Vec3d&, int);

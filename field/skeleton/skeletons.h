@@ -1,4 +1,4 @@
-// Fields of single skeleton primitives under the inverse kernel family.
+// Fields of single skeleton primitives.
 #pragma once
 
 #include "field/description/field_node.h"
@@ -6,7 +6,8 @@
 
 namespace marrow {
 
-/// All: radii > 0, family_degree in [min_kernel_degree, max_kernel_degree]; p and the skeleton in the same units.
+/// Under the inverse kernel family, where the kernel is given by its degree. All: radii > 0, family_degree in
+/// [min_kernel_degree, max_kernel_degree]; p and the skeleton in the same units.
 
 /// f = (radius / d)^(n-1).   [field-maths 3.1]
 template <Derivatives>
@@ -17,8 +18,24 @@ SkeletonSample point_field(const PointSkeleton&, const Vec3d& p, int family_degr
 template <Derivatives>
 SkeletonSample segment_field(const SegmentSkeleton&, const Vec3d& p, int family_degree);
 
+/// Integral of the kernel over the triangle, radius linear; relative error below 1e-12. A triangle without area has no
+/// field. Costs some hundred lines of segment_field each; more near the triangle.   [field-maths 3.4]
+template <Derivatives>
+SkeletonSample triangle_field(const TriangleSkeleton&, const Vec3d& p, int family_degree);
+
+/// Integral of the kernel along the arc or circle, radius linear in the angle.   [field-maths 3.5]
+template <Derivatives>
+SkeletonSample arc_field(const ArcSkeleton&, const Vec3d& p, int family_degree);
+
 /// Kernel of the smallest scaled distance min_q |p - q| / radius(q).   [field-maths 3.2]
 template <Derivatives>
 SkeletonSample distance_segment_field(const SegmentSkeleton&, const Vec3d& p, int family_degree);
+
+/// The same under the Cauchy or the compact kernel (kernel.family is not the inverse one); finite everywhere.
+/// A segment costs some panels of 20 nodes.   [field-maths 1, 2]
+template <Derivatives>
+SkeletonSample point_field(const PointSkeleton&, const Vec3d& p, const Kernel&);
+template <Derivatives>
+SkeletonSample segment_field(const SegmentSkeleton&, const Vec3d& p, const Kernel&);
 
 }  // namespace marrow

@@ -94,8 +94,7 @@ struct BlendTracer::State {
 };
 
 Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const TraceOptions& options) {
-  if (!field.distance_segments.empty())
-    return failure("`model: distance` can be evaluated (probe, slice) but not rendered by this version");
+  if (const std::string part = untraceable_part(field); !part.empty()) return failure(part);
   const BlockKernels* kernels = block_kernels(options.instruction_set);
   if (kernels == nullptr)
     return failure("instruction set \"" + options.instruction_set + "\" is unknown or not of this machine");

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "field/kernel/inverse_family.h"
 #include "renderer/scene/primitive_forms.h"
@@ -12,29 +13,79 @@ namespace {
 
 constexpr double degree_in_radians = 3.14159265358979323846 / 180;
 
-const Alternatives<InverseKernel>& kernels() {
-  static const Alternatives<InverseKernel> kernels(
-      "kernel", "The kernel of a blend; its degree says how far skeletons feel each other.",
-      {{"inverse",
-        mapped<InverseKernel>(integer(min_kernel_degree, max_kernel_degree), [](int n) { return InverseKernel{n}; })}},
-      {"cauchy", "compact"});
-  return kernels;
+struct WrittenKernel {
+  Kernel kernel;
+  std::optional<double> scale, support;
+};
+
+Key<WrittenKernel> kernel_degree_key(const std::string& name, KernelFamily family, const std::string& doc) {
+  const auto set = [family](WrittenKernel& k, int degree) {
+    k.kernel.family = family;
+    k.kernel.degree = degree;
+  };
+  return key<WrittenKernel>(name, set, integer(min_kernel_degree, max_kernel_degree), doc);
+}
+
+bool shape_fits(const WrittenKernel& k, const Value& v, Reader& reader) {
+  const auto only_for = [&](bool is_given, const std::string& name, KernelFamily family, const std::string& owner) {
+    if (!is_given || k.kernel.family == family) return true;
+    reader.error(v.find(name)->value.place, "`" + name + "` belongs to the kernel `" + owner + "`", "");
+    return false;
+  };
+  return only_for(k.scale.has_value(), "scale", KernelFamily::Cauchy, "cauchy") &&
+         only_for(k.support.has_value(), "support", KernelFamily::Compact, "compact");
+}
+
+const Table<WrittenKernel>& kernel_table() {
+  static const Table<WrittenKernel> table = [] {
+    Table<WrittenKernel> made(
+        "kernel", "The kernel of a blend; its degree says how far skeletons feel each other.",
+        {kernel_degree_key("inverse", KernelFamily::Inverse, "x^-m of this degree: everything can be rendered with it"),
+         kernel_degree_key("cauchy", KernelFamily::Cauchy,
+                           "(1 + scale^2 x^2)^(-m/2), finite on skeletons; `alpha: sum`, `probe` and `slice` only"),
+         kernel_degree_key("compact", KernelFamily::Compact,
+                           "(1 - x^2/support^2)^(m/2), 0 beyond; `alpha: sum`, `probe` and `slice` only"),
+         key<WrittenKernel>("scale", &WrittenKernel::scale, number(between(0.01, 100)), "of `cauchy`; 1 when left out"),
+         key<WrittenKernel>("support", &WrittenKernel::support, number(between(1.01, 100)),
+                            "of `compact`, in radii; 2 when left out")},
+        shape_fits);
+    made.info.exactly_one = {"inverse", "cauchy", "compact"};
+    return made;
+  }();
+  return table;
+}
+
+Form<Kernel> kernel() {
+  return mapped<Kernel>(map_of(kernel_table()), [](const WrittenKernel& k) {
+    Kernel kernel = k.kernel;
+    if (kernel.family == KernelFamily::Cauchy) kernel.shape = k.scale.value_or(1);
+    if (kernel.family == KernelFamily::Compact) kernel.shape = k.support.value_or(2);
+    return kernel;
+  });
 }
 
 Form<Alpha> alpha() {
   static const Alternatives<Alpha> maps("alpha", "", {}, {"direction", "attribute"});
-  const auto from_word = [](bool is_sum) { return is_sum ? Alpha(AlphaSum{}) : Alpha(AlphaContact{}); };
+  enum class Word { Contact, Sum, PerSkeleton };
+  const auto from_word = [](Word word) {
+    if (word == Word::PerSkeleton) return Alpha(AlphaPerSkeleton{});
+    return word == Word::Sum ? Alpha(AlphaSum{}) : Alpha(AlphaContact{});
+  };
   const auto from_angle = [](double radians) { return Alpha(radians); };
-  return either<Alpha>({mapped<Alpha>(choice<bool>({{"contact", false}, {"sum", true}}, {"per_skeleton"}), from_word),
-                        mapped<Alpha>(primitive_alpha(), from_angle), one_of(maps)});
+  return either<Alpha>(
+      {mapped<Alpha>(
+           choice<Word>({{"contact", Word::Contact}, {"sum", Word::Sum}, {"per_skeleton", Word::PerSkeleton}}),
+           from_word),
+       mapped<Alpha>(primitive_alpha(), from_angle), one_of(maps)});
 }
 
 const Table<Blend>& blend_table() {
   static const Table<Blend> table(
       "blend", "Many skeletons as one smooth body with topology control (Zanni, Cani, Gleicher 2015).",
-      {key<Blend>("kernel", &Blend::kernel, one_of(kernels()), "the kernel; degree 4 when left out"),
+      {key<Blend>("kernel", &Blend::kernel, kernel(), "the kernel; degree 4 when left out"),
        key<Blend>("alpha", &Blend::alpha, alpha(),
-                  "projection angle: `contact` (when left out) blends where skeletons touch, `sum` is the plain sum"),
+                  "projection angle: `contact` (when left out) blends where skeletons touch, `sum` is the plain sum, "
+                  "`per_skeleton` takes the skeletons' own"),
        key<Blend>("cavity", &Blend::cavity, boolean(), "whether hollows that close are corrected too"),
        key<Blend>("projection", &Blend::projection,
                   choice<Projection>({{"paper", Projection::Paper}, {"exact", Projection::Exact}}),
@@ -117,16 +168,16 @@ const Alternatives<FieldNodeId>& field_nodes() {
                                                {{"point", added(point_form(), as_it_is)},
                                                 {"segment", added(segment_form(), as_it_is)},
                                                 {"polyline", added(polyline_form(), as_it_is)},
+                                                {"curve", added(curve_form(), as_it_is)},
+                                                {"triangle", added(triangle_form(), as_it_is)},
+                                                {"circle", added(circle_form(), as_it_is)},
+                                                {"arc", added(arc_form(), as_it_is)},
                                                 {"skeleton", added(skeleton_form(), as_it_is)},
                                                 {"blend", added(map_of(blend_table()), as_it_is)},
                                                 {"union", added(map_of(union_table()), as_it_is)},
                                                 {"transform", added(map_of(transform_table()), transform_of)},
                                                 {"use", use()}},
-                                               {"triangle",
-                                                "circle",
-                                                "arc",
-                                                "curve",
-                                                "sphere",
+                                               {"sphere",
                                                 "cylinder",
                                                 "cone",
                                                 "box",
@@ -180,12 +231,12 @@ Form<FieldDescription> field_tree() {
 
 std::vector<const TableInfo*> field_tables() {
   std::vector<const TableInfo*> tables = primitive_tables();
-  for (const TableInfo* table :
-       {&blend_table().info, &union_table().info, &transform_table().info, &rotation_table().info})
+  for (const TableInfo* table : {&kernel_table().info, &blend_table().info, &union_table().info,
+                                 &transform_table().info, &rotation_table().info})
     tables.push_back(table);
   return tables;
 }
 
-std::vector<const AlternativesInfo*> field_alternatives() { return {&field_nodes().info, &kernels().info}; }
+std::vector<const AlternativesInfo*> field_alternatives() { return {&field_nodes().info}; }
 
 }  // namespace marrow

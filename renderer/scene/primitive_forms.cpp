@@ -1,7 +1,12 @@
-// Tables of point, segment, polyline and skeleton; what they share is written once.
+// Tables of point, segment, polyline, curve and skeleton; what they share is written once.
 #include "renderer/scene/primitive_forms.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <memory>
+#include <numbers>
 
 #include "renderer/scene/files/swc.h"
 #include "renderer/scene/scalar.h"
@@ -21,7 +26,8 @@ template <class Skeleton>
 std::vector<Key<Drawn<Skeleton>>> with_common_keys(std::vector<Key<Drawn<Skeleton>>> keys) {
   using Owner = Drawn<Skeleton>;
   keys.push_back(key<Owner>("model", &Owner::model, skeleton_model(), "its field; the blend's when left out"));
-  keys.push_back(key<Owner>("alpha", &Owner::alpha, primitive_alpha(), "in radians, for `alpha: per_skeleton`"));
+  keys.push_back(key<Owner>("alpha", &Owner::alpha, primitive_alpha(),
+                            "in radians, for `alpha: per_skeleton`; contact when left out"));
   keys.push_back(key<Owner>("material", &Owner::material, material_name(), "the object's when left out"));
   return keys;
 }
@@ -73,6 +79,22 @@ const Table<Drawn<SegmentSkeleton>>& segment_table() {
   return table;
 }
 
+// One radius for all points or one for each.
+template <class Line>
+bool radii_fit(const Line& line, const Value& v, Reader& reader) {
+  if (line.radii.size() == 1 || line.radii.size() == line.points.size()) return true;
+  const Member* radius = v.find("radius");
+  reader.error(radius->value.place,
+               std::to_string(line.points.size()) + " points but " + std::to_string(line.radii.size()) + " radii",
+               "give one radius for each point, or one number for all");
+  return false;
+}
+template <class Line>
+Primitive with_all_radii(Drawn<Line> line) {
+  if (line.radii.size() == 1) line.radii.resize(line.points.size(), line.radii.front());
+  return primitive<Line>(std::move(line));
+}
+
 const Table<Drawn<PolylineSkeleton>>& polyline_table() {
   using Polyline = Drawn<PolylineSkeleton>;
   static const Table<Polyline> table(
@@ -82,19 +104,135 @@ const Table<Drawn<PolylineSkeleton>>& polyline_table() {
            key<Polyline>("radius", &PolylineSkeleton::radii,
                          radii(2, no_limit, "a radius above 0, or one for each point"), "of its surface when alone")
                .required()}),
-      [](const Polyline& line, const Value& v, Reader& reader) {
-        if (line.radii.size() == 1 || line.radii.size() == line.points.size()) return true;
-        const Member* radius = v.find("radius");
-        reader.error(radius->value.place,
-                     std::to_string(line.points.size()) + " points but " + std::to_string(line.radii.size()) + " radii",
-                     "give one radius for each point, or one number for all");
-        return false;
-      });
+      radii_fit<Polyline>);
   return table;
 }
-PolylineSkeleton with_all_radii(PolylineSkeleton line) {
-  if (line.radii.size() == 1) line.radii.resize(line.points.size(), line.radii.front());
-  return line;
+
+bool joints_fit(const Drawn<CurveSkeleton>& curve, const Value& v, Reader& reader) {
+  bool fit = radii_fit(curve, v, reader);
+  for (std::size_t i = 0; i < curve.sticking.size(); ++i) {
+    if (static_cast<std::size_t>(curve.sticking[i]) < curve.points.size()) continue;
+    reader.error(v.find("sticking")->value.items[i].place,
+                 "no joint " + std::to_string(curve.sticking[i]) + ": the curve has " +
+                     std::to_string(curve.points.size()) + " points",
+                 "joints are counted from 0");
+    fit = false;
+  }
+  return fit && reader.spend_nodes(curve.points.size() << curve.levels, v.place);
+}
+
+const Table<Drawn<CurveSkeleton>>& curve_table() {
+  using Curve = Drawn<CurveSkeleton>;
+  static const Table<Curve> table(
+      "curve", "A smooth curve: segments refined by subdivision (Cani and Hornus 2001). It passes through its ends.",
+      with_common_keys<CurveSkeleton>(
+          {key<Curve>("points", &CurveSkeleton::points, list_of(position(), 2), "control points in order").required(),
+           key<Curve>("radius", &CurveSkeleton::radii, radii(2, no_limit, "a radius above 0, or one for each point"),
+                      "of its surface when alone; refined like the points")
+               .required(),
+           key<Curve>("subdivision", &CurveSkeleton::subdivision,
+                      choice<Subdivision>({{"chaikin", Subdivision::Chaikin}, {"cubic", Subdivision::Cubic}}),
+                      "toward the quadratic (`chaikin`) or the cubic B-spline"),
+           key<Curve>("levels", &CurveSkeleton::levels, integer(0, CurveSkeleton::max_levels),
+                      "level of detail: each doubles the segments"),
+           key<Curve>("sticking", &CurveSkeleton::sticking, list_of(integer(0, std::numeric_limits<int>::max())),
+                      "points that stay as they are, counted from 0; the curve passes through them with a corner")}),
+      joints_fit);
+  return table;
+}
+
+const Table<Drawn<TriangleSkeleton>>& triangle_table() {
+  using Triangle = Drawn<TriangleSkeleton>;
+  static const Table<Triangle> table(
+      "triangle", "A plate around a triangle whose thickness changes evenly. `probe` and `slice` only, for now.",
+      with_common_keys<TriangleSkeleton>(
+          {key<Triangle>(
+               "vertices",
+               [](Triangle& t, const std::vector<Vec3d>& v) { std::copy_n(v.begin(), 3, t.vertices.begin()); },
+               list_of(position(), 3, 3), "its corners")
+               .required(),
+           key<Triangle>(
+               "radius",
+               [](Triangle& t, const std::vector<double>& r) {
+                 if (r.size() == 1) t.radii.fill(r.front());
+                 else std::copy_n(r.begin(), 3, t.radii.begin());
+               },
+               radii(3, 3, "a radius above 0, or one for each corner"),
+               "half the thickness of a wide plate; 1 when left out")}));
+  return table;
+}
+
+// A circle or an arc as it is written: axes of any length, angles in degrees.
+struct Round : ArcSkeleton {
+  std::array<double, 2> angles_deg{0, 360};
+};
+void set_axes(Drawn<Round>& round, const std::vector<Vec3d>& axes) {
+  round.axis1 = axes[0];
+  round.axis2 = axes[1];
+}
+std::vector<Key<Drawn<Round>>> round_keys() {
+  using Arc = Drawn<Round>;
+  return {key<Arc>("center", &ArcSkeleton::center, position(), "its centre"),
+          key<Arc>("axes", set_axes, list_of(direction(), 2, 2),
+                   "two directions at right angles, the first at angle 0; x and y when left out"),
+          key<Arc>("major", &ArcSkeleton::major, number(any_radius()), "distance of the centre line from the centre")};
+}
+bool round_fits(const Drawn<Round>& round, const Value& v, Reader& reader) {
+  // A degree of a millionth is no more than rounding of numbers with six digits.
+  constexpr double right_angle = 1e-5;
+  if (std::fabs(dot(normalize(round.axis1), normalize(round.axis2))) > right_angle) {
+    reader.error(v.find("axes")->value.place, "the axes are not at right angles", "");
+    return false;
+  }
+  const auto [begin, end] = round.angles_deg;
+  if (end > begin && end - begin <= 360) return true;
+  reader.error(v.find("angles")->value.place, "the angles must rise by at most 360 degrees", "");
+  return false;
+}
+
+const Table<Drawn<Round>>& circle_table() {
+  using Circle = Drawn<Round>;
+  std::vector<Key<Circle>> keys = round_keys();
+  keys.push_back(key<Circle>(
+      "radius", [](Circle& c, double r) { c.radius_from = c.radius_to = r; }, number(any_radius()),
+      "of the tube; 1 when left out"));
+  static const Table<Circle> table("circle", "A ring. `probe` and `slice` only, for now.",
+                                   with_common_keys<Round>(std::move(keys)), round_fits);
+  return table;
+}
+
+const Table<Drawn<Round>>& arc_table() {
+  using Arc = Drawn<Round>;
+  std::vector<Key<Arc>> keys = round_keys();
+  keys.push_back(key<Arc>(
+                     "angles",
+                     [](Arc& a, const std::vector<double>& angles) {
+                       a.angles_deg = {angles[0], angles[1]};
+                     },
+                     list_of(degrees(any_number()), 2, 2), "where it begins and ends, in degrees")
+                     .required());
+  keys.push_back(key<Arc>(
+      "radius",
+      [](Arc& a, const std::vector<double>& r) {
+        a.radius_from = r.front();
+        a.radius_to = r.back();
+      },
+      radii(2, 2, "a radius above 0, or two: [at the begin, at the end]"), "of the tube; 1 when left out"));
+  static const Table<Arc> table("arc",
+                                "A part of a ring whose radius changes evenly. `probe` and `slice` only, for now.",
+                                with_common_keys<Round>(std::move(keys)), round_fits);
+  return table;
+}
+
+Primitive arc_of(const Drawn<Round>& drawn) {
+  constexpr double degree_in_radians = std::numbers::pi / 180;
+  ArcSkeleton arc = drawn;
+  const UnitVec3 first = normalize(arc.axis1);
+  arc.axis1 = first.vec();
+  arc.axis2 = normalize(arc.axis2 - first * dot(arc.axis2, first)).vec();
+  arc.begin = drawn.angles_deg[0] * degree_in_radians;
+  arc.end = drawn.angles_deg[1] * degree_in_radians;
+  return {.skeleton = arc, .model = drawn.model, .alpha = drawn.alpha, .material = drawn.material};
 }
 
 struct SkeletonFile {
@@ -143,12 +281,13 @@ Form<double> primitive_alpha() { return radians(between(-1, 1.570796326794896619
 Form<Primitive> point_form() { return mapped<Primitive>(map_of(point_table()), primitive<PointSkeleton>); }
 Form<Primitive> segment_form() { return mapped<Primitive>(map_of(segment_table()), primitive<SegmentSkeleton>); }
 Form<Primitive> polyline_form() {
-  return mapped<Primitive>(map_of(polyline_table()), [](Drawn<PolylineSkeleton> drawn) {
-    Primitive made = primitive<PolylineSkeleton>(std::move(drawn));
-    made.skeleton = with_all_radii(std::get<PolylineSkeleton>(std::move(made.skeleton)));
-    return made;
-  });
+  return mapped<Primitive>(map_of(polyline_table()), with_all_radii<PolylineSkeleton>);
 }
+Form<Primitive> curve_form() { return mapped<Primitive>(map_of(curve_table()), with_all_radii<CurveSkeleton>); }
+
+Form<Primitive> triangle_form() { return mapped<Primitive>(map_of(triangle_table()), primitive<TriangleSkeleton>); }
+Form<Primitive> circle_form() { return mapped<Primitive>(map_of(circle_table()), arc_of); }
+Form<Primitive> arc_form() { return mapped<Primitive>(map_of(arc_table()), arc_of); }
 
 Form<Primitive> skeleton_form() {
   const Form<Drawn<SkeletonFile>> map = map_of(skeleton_table());
@@ -164,7 +303,8 @@ Form<Primitive> skeleton_form() {
 }
 
 std::vector<const TableInfo*> primitive_tables() {
-  return {&point_table().info, &segment_table().info, &polyline_table().info, &skeleton_table().info};
+  return {&point_table().info,    &segment_table().info, &polyline_table().info, &curve_table().info,
+          &triangle_table().info, &circle_table().info,  &arc_table().info,      &skeleton_table().info};
 }
 
 }  // namespace marrow

@@ -16,6 +16,11 @@ Form<double> primitive_alpha();
 Form<Primitive> point_form();
 Form<Primitive> segment_form();
 Form<Primitive> polyline_form();
+Form<Primitive> triangle_form();
+Form<Primitive> circle_form();
+Form<Primitive> arc_form();
+/// A subdivision curve.
+Form<Primitive> curve_form();
 /// Reads the file that it names.
 Form<Primitive> skeleton_form();
 

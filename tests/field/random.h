@@ -38,6 +38,25 @@ class Random {
     const double first = between(0.2, 0.8);
     return {from, to, first, between(0, 1) < 0.3 ? first : between(0.2, 0.8)};
   }
+  TriangleSkeleton triangle() {
+    TriangleSkeleton t{{vector(1.6), vector(1.6), vector(1.6)}, {}};
+    t.radii.fill(between(0.2, 0.8));
+    if (between(0, 1) < 0.5) t.radii = {between(0.2, 0.8), between(0.2, 0.8), between(0.2, 0.8)};
+    return t;
+  }
+  ArcSkeleton arc() {
+    ArcSkeleton a;
+    a.center = vector(1);
+    const UnitVec3 first = normalize(vector(1));
+    a.axis1 = first.vec();
+    a.axis2 = normalize(cross(first.vec(), vector(1))).vec();
+    a.major = between(0.3, 2);
+    a.begin = between(-4, 4);
+    a.end = a.begin + between(0.2, 6.2);
+    a.radius_from = between(0.2, 0.8);
+    a.radius_to = between(0, 1) < 0.3 ? a.radius_from : between(0.2, 0.8);
+    return a;
+  }
 
  private:
   std::uint64_t state_;

@@ -27,6 +27,10 @@ void for_each_primitive(Random& random, const Check& check) {
   check([=](const Vec3d& p, int n) { return point_field<second>(point, p, n); }, "point");
   check([=](const Vec3d& p, int n) { return segment_field<second>(segment, p, n); }, "segment");
   check([=](const Vec3d& p, int n) { return distance_segment_field<second>(segment, p, n); }, "distance segment");
+  const TriangleSkeleton triangle = random.triangle();
+  const ArcSkeleton arc = random.arc();
+  check([=](const Vec3d& p, int n) { return triangle_field<second>(triangle, p, n); }, "triangle");
+  check([=](const Vec3d& p, int n) { return arc_field<second>(arc, p, n); }, "arc");
 }
 
 TEST(Skeleton, GradientsAndJacobianAreTheDerivatives) {
@@ -126,6 +130,11 @@ TEST(Skeleton, LevelsOfDerivativesAgreeBitForBit) {
     EXPECT_EQ(b.gradient, c.gradient);
     EXPECT_EQ(distance_segment_field<Derivatives::ScaleInvariant>(segment, p, n).si_gradient,
               distance_segment_field<Derivatives::Second>(segment, p, n).si_gradient);
+    const TriangleSkeleton triangle = random.triangle();
+    EXPECT_EQ(triangle_field<Derivatives::ScaleInvariant>(triangle, p, n).si_gradient,
+              triangle_field<Derivatives::Second>(triangle, p, n).si_gradient);
+    const ArcSkeleton arc = random.arc();
+    EXPECT_EQ(arc_field<Derivatives::First>(arc, p, n).gradient, arc_field<Derivatives::Second>(arc, p, n).gradient);
   }
 }
 

@@ -184,5 +184,46 @@ TEST_F(ReadScene, SamplesOfTheRepositoryLoad) {
 
 TEST_F(ReadScene, AByteOrderMarkIsNoPartOfTheText) { EXPECT_TRUE(read("\xEF\xBB\xBFmarrow: 1\n")); }
 
+TEST_F(ReadScene, KnowsEverySkeletonAndKernel) {
+  const auto scene = read(R"(marrow: 1
+objects:
+  - field:
+      blend:
+        alpha: per_skeleton
+        of:
+          - curve: {points: [[0, 0, 0], [1, 0, 0], [1, 1, 0]], radius: 0.2, subdivision: cubic, levels: 2, sticking: [1]}
+          - triangle: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0]], radius: [0.1, 0.2, 0.3], alpha: 0.7}
+          - circle: {center: [0, 0, 1], axes: [[0, 2, 0], [0, 0, 3]], major: 2, radius: 0.3}
+          - arc: {major: 1, angles: [-90, 0.5rad], radius: [0.3, 0.1]}
+  - field: {blend: {kernel: {cauchy: 5, scale: 1.5}, alpha: sum, of: [{point: {at: [0, 0, 0]}}]}}
+  - field: {blend: {kernel: {compact: 6}, alpha: sum, of: [{point: {at: [0, 0, 0]}}]}}
+)");
+  ASSERT_TRUE(scene) << render_all(scene.why(), record.sources);
+  const auto& field = std::get<FieldDescription>(scene->objects[0].shape);
+  const auto& blend = std::get<Blend>(field[field.root].what);
+  EXPECT_TRUE(std::holds_alternative<AlphaPerSkeleton>(blend.alpha));
+  const auto child = [&](std::size_t i) -> const Primitive& { return std::get<Primitive>(field[blend.of[i]].what); };
+  const auto& curve = std::get<CurveSkeleton>(child(0).skeleton);
+  EXPECT_EQ(curve.subdivision, Subdivision::Cubic);
+  EXPECT_EQ(curve.sticking, std::vector<int>{1});
+  EXPECT_EQ(curve.radii, (std::vector<double>{0.2, 0.2, 0.2}));
+  EXPECT_EQ(std::get<TriangleSkeleton>(child(1).skeleton).radii, (std::array<double, 3>{0.1, 0.2, 0.3}));
+  EXPECT_EQ(child(1).alpha, 0.7);
+  const auto& circle = std::get<ArcSkeleton>(child(2).skeleton);
+  EXPECT_EQ(circle.axis1, (Vec3d{0, 1, 0}));
+  EXPECT_EQ(circle.axis2, (Vec3d{0, 0, 1}));
+  EXPECT_NEAR(circle.end - circle.begin, 6.283185307179586, 1e-15);
+  const auto& arc = std::get<ArcSkeleton>(child(3).skeleton);
+  EXPECT_NEAR(arc.begin, -1.5707963267948966, 1e-15);
+  EXPECT_NEAR(arc.end, 0.5, 1e-15);
+  EXPECT_EQ(arc.radius_to, 0.1);
+  const auto kernel_of = [&](std::size_t object) {
+    const auto& tree = std::get<FieldDescription>(scene->objects[object].shape);
+    return std::get<Blend>(tree[tree.root].what).kernel;
+  };
+  EXPECT_EQ(kernel_of(1), (Kernel{KernelFamily::Cauchy, 5, 1.5}));
+  EXPECT_EQ(kernel_of(2), (Kernel{KernelFamily::Compact, 6, 2}));
+}
+
 }  // namespace
 }  // namespace marrow

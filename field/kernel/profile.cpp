@@ -1,0 +1,53 @@
+// Powers of one half, and the normalisations of field-maths 1.
+#include "field/kernel/profile.h"
+
+#include <cmath>
+
+#include "field/kernel/inverse_family.h"
+#include "field/math/elementary.h"
+
+namespace marrow {
+namespace {
+
+// x^(m/2) for m >= -1
+double half_power(double x, int m) {
+  if (m < 0) return 1 / std::sqrt(x);
+  const double whole = integer_power(x, m / 2);
+  return m % 2 == 0 ? whole : whole * std::sqrt(x);
+}
+
+double cauchy_normalisation(double s, int m, int dimension) {
+  const double u = 1 + s * s;
+  return dimension == 0 ? 1 / half_power(u, m) : curve_normalisation(m) / (half_power(u, m - 1) * s);
+}
+
+// R sqrt(pi) Gamma(m/2 + 1) / Gamma(m/2 + 3/2) v^((m+1)/2); the quotient is that of a curve of degree m + 3, here by
+// its recurrence from m - 1.
+double compact_normalisation(double R, int m, int dimension) {
+  const double v = 1 - 1 / (R * R);
+  if (dimension == 0) return half_power(v, m);
+  const double quotient = curve_normalisation(m - 1) * (m - 2) / (m - 1) * m / (m + 1);
+  return R * quotient * half_power(v, m + 1);
+}
+
+}  // namespace
+
+Profile::Profile(const Kernel& kernel, int dimension)
+    : kernel_(kernel),
+      degree_(kernel.family == KernelFamily::Cauchy ? kernel.degree - 1 + dimension : kernel.degree + 1 - dimension),
+      normalisation_(kernel.family == KernelFamily::Cauchy ? cauchy_normalisation(kernel.shape, degree_, dimension)
+                                                           : compact_normalisation(kernel.shape, degree_, dimension)) {}
+
+ProfileSample Profile::at(double y) const {
+  const double half = degree_ / 2.0, shape_squared = kernel_.shape * kernel_.shape;
+  if (kernel_.family == KernelFamily::Cauchy) {
+    const double x = 1 / (1 + shape_squared * y), value = half_power(x, degree_), factor = shape_squared * x;
+    return {value, -half * factor * value, half * (half + 1) * factor * factor * value};
+  }
+  const double x = 1 - y / shape_squared;
+  if (!(x > 0)) return {0, 0, 0};
+  const double base = half_power(x, degree_ - 4);
+  return {base * x * x, -half / shape_squared * base * x, half * (half - 1) / (shape_squared * shape_squared) * base};
+}
+
+}  // namespace marrow

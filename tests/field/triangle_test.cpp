@@ -1,0 +1,93 @@
+// Laws of the field of a triangle.
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include <gtest/gtest.h>
+
+#include "field/kernel/inverse_family.h"
+#include "field/math/box3.h"
+#include "field/skeleton/skeletons.h"
+#include "tests/field/random.h"
+
+namespace marrow {
+namespace {
+
+using test::Random;
+using test::relative;
+
+constexpr auto second = Derivatives::Second;
+
+double difference(const SkeletonSample& a, const SkeletonSample& b) {
+  return std::max(
+      {relative(a.value, b.value), relative(a.gradient, b.gradient), relative(a.si_gradient, b.si_gradient)});
+}
+
+TEST(Triangle, FieldIsTheSumOfItsParts) {
+  Random random(81);
+  double worst = 0;
+  for (int i = 0; i < 300; ++i) {
+    const TriangleSkeleton t = random.triangle();
+    const auto& [a, b, c] = t.vertices;
+    const Vec3d p = random.vector(i % 2 == 0 ? 2 : 20);
+    const int n = random.whole(3, 12);
+    const SkeletonSample whole = triangle_field<second>(t, p, n);
+    if (whole.value > 1e4) continue;
+    const double cut = random.between(0.2, 0.8);
+    const Vec3d middle = lerp(a, b, cut);
+    const double radius = t.radii[0] + (t.radii[1] - t.radii[0]) * cut;
+    SkeletonSample parts = triangle_field<second>({{a, middle, c}, {t.radii[0], radius, t.radii[2]}}, p, n);
+    parts += triangle_field<second>({{middle, b, c}, {radius, t.radii[1], t.radii[2]}}, p, n);
+    worst = std::max(worst, difference(whole, parts));
+  }
+  std::cout << "  worst relative difference " << worst << '\n';
+  EXPECT_LE(worst, 1e-12);
+}
+
+TEST(Triangle, DoesNotDependOnTheOrderOfItsVertices) {
+  Random random(82);
+  for (int i = 0; i < 100; ++i) {
+    const TriangleSkeleton t = random.triangle();
+    const Vec3d p = random.vector(2);
+    const int n = random.whole(3, 12);
+    const TriangleSkeleton other{{t.vertices[2], t.vertices[1], t.vertices[0]}, {t.radii[2], t.radii[1], t.radii[0]}};
+    const SkeletonSample a = triangle_field<second>(t, p, n);
+    if (a.value > 1e4) continue;
+    EXPECT_LE(difference(a, triangle_field<second>(other, p, n)), 1e-12);
+  }
+}
+
+TEST(Triangle, WidePlateLiesOnTheReferenceCurveWithItsRadius) {
+  for (int n = min_kernel_degree + 1; n <= max_kernel_degree; ++n) {
+    const TriangleSkeleton plate{{Vec3d{-4e6, -3e6, 0}, {4e6, -3e6, 0}, {0, 5e6, 0}}, {0.5, 0.5, 0.5}};
+    EXPECT_LE(relative(triangle_field<second>(plate, {0.3, 0.1, 0.5}, n).value, 1.0), 1e-12) << n;
+    const SkeletonSample off = triangle_field<second>(plate, {0, 0, -0.9}, n);
+    EXPECT_LE(relative(length(off.si_gradient), ReferenceCurve(n).at(off.value)), 1e-12) << n;
+  }
+}
+
+TEST(Triangle, IsInfiniteOnItselfAndFiniteInItsPlaneBeside) {
+  const TriangleSkeleton t{{Vec3d{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {0.5, 0.5, 0.25}};
+  for (int n = min_kernel_degree; n <= max_kernel_degree; ++n) {
+    for (const Vec3d& on : {Vec3d{0.5, 0.5, 0}, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}}) {
+      EXPECT_EQ(triangle_field<second>(t, on, n).value, Box3::inf);
+      EXPECT_EQ(triangle_field<second>(t, on, n).gradient, Vec3d{});
+    }
+    const SkeletonSample beside = triangle_field<second>(t, {1.2, 1.2, 0}, n);
+    EXPECT_TRUE(beside.value > 0 && std::isfinite(beside.value));
+    EXPECT_EQ(beside.gradient.z, 0);
+    for (int e = -40; e <= 40; e += 4) {
+      const SkeletonSample s = triangle_field<second>(t, {0.5, 0.5, pow(10, e)}, n);
+      EXPECT_FALSE(std::isnan(s.value));
+      EXPECT_TRUE(is_finite(s.gradient) && is_finite(s.si_gradient)) << "n " << n << " 1e" << e;
+    }
+  }
+}
+
+TEST(Triangle, WithoutAreaHasNoField) {
+  const TriangleSkeleton flat{{Vec3d{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {1, 1, 1}};
+  EXPECT_EQ(triangle_field<second>(flat, {0, 1, 0}, 4).value, 0);
+}
+
+}  // namespace
+}  // namespace marrow
