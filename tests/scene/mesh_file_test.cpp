@@ -64,6 +64,17 @@ TEST(MeshFile, ReadsPly) {
   expect_square(ply("binary_big_endian", binary_square(true)), "a.ply");
 }
 
+// Cut anywhere, a file is refused or read in part, but reading always ends.
+TEST(MeshFile, EndsOnFilesThatWereCut) {
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+  for (std::size_t size = 0; size < ply.size(); ++size) {
+    const auto mesh = read_mesh(ply.substr(0, size), "a.ply");
+    EXPECT_EQ(static_cast<bool>(mesh) && size < ply.find("0 0 0"), false) << size;
+  }
+}
+
 TEST(MeshFile, RefusesWhatIsNoMesh) {
   EXPECT_FALSE(read_mesh("v 0 0 0\n", "a.stl"));
   EXPECT_FALSE(read_mesh("", "a.obj"));
