@@ -33,11 +33,15 @@ class Findings {
     for (const Vec3d& p : positions)
       if (!is_finite(p)) return add("a position is not finite", "coordinates are finite numbers");
   }
+  // Powers up to the degree of the kernel, at most 20, must stay numbers.
   void check_radii(std::span<const double> radii) {
+    constexpr double smallest = 1e-15;
     for (std::size_t i = 0; i < radii.size(); ++i) {
-      if (radii[i] > 0 && std::isfinite(radii[i])) continue;
+      if (radii[i] >= smallest && std::isfinite(radii[i])) continue;
       const std::string which = radii.size() == 1 ? "the radius" : fmt::format("radius {} of {}", i + 1, radii.size());
-      return add(fmt::format("{} is {}", which, radii[i]), "a radius is a finite number above 0");
+      return add(fmt::format("{} is {}", which, radii[i]), radii[i] > 0
+                                                               ? "a radius is at least 1e-15; scale the scene up"
+                                                               : "a radius is a finite number above 0");
     }
   }
 

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -27,13 +29,32 @@ const char* name_of(StopReason reason) {
   return "unknown";
 }
 
+// Samples of a pixel: what was asked for, and what was reached.
+struct SampleCounts {
+  int asked = 0;
+  std::uint32_t fewest = 0, most = 0;
+};
+
+SampleCounts sample_counts(const Picture& picture, int asked) {
+  SampleCounts counts{.asked = asked};
+  for (const Channel& channel : picture.channels)
+    if (const auto* reached = std::get_if<std::vector<std::uint32_t>>(&channel.samples);
+        channel.name == "samples" && reached && !reached->empty()) {
+      counts.fewest = *std::ranges::min_element(*reached);
+      counts.most = *std::ranges::max_element(*reached);
+    }
+  return counts;
+}
+
 Picture picture_of(const Film& film, const SceneDescription& scene, const RenderSettings& settings) {
   Picture picture = to_picture(film);
   const auto clamped = [](std::uint64_t n) { return static_cast<int>(std::min<std::uint64_t>(n, INT32_MAX)); };
+  const SampleCounts samples = sample_counts(picture, settings.samples_per_pixel);
   picture.metadata = {
       {"marrow/sceneHash", scene.hash},
       {"marrow/seed", std::to_string(settings.seed)},
-      {"marrow/spp", settings.samples_per_pixel},
+      {"marrow/spp", samples.asked},
+      {"marrow/sppRange", fmt::format("{}-{}", samples.fewest, samples.most)},
       {"marrow/stop", std::string(name_of(film.stopped_by))},
       {"marrow/invalidSamples", clamped(film.invalid_samples().count)},
       {"marrow/uncertifiedPixels", clamped(film.uncertified_pixels())},

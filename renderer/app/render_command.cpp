@@ -59,9 +59,11 @@ ExitCode exit_code_of_failed_build(const Diagnostics& why) {
   return in_scene ? ExitCode::BadInput : ExitCode::Unavailable;
 }
 
+// Pictures that were resampled may dip below zero; light does not.
 Result<EnvironmentImage> load_environment(const std::filesystem::path& path) {
   auto image = read_rgb_image(path);
   if (!image) return image.why();
+  for (float& sample : image->samples) sample = std::max(sample, 0.0F);
   return EnvironmentImage{image->width, image->height, std::move(image->samples)};
 }
 

@@ -72,7 +72,7 @@ Status check_finite(const RgbImage& image) {
   if (bad == image.samples.end()) return Done{};
   const auto pixel = (bad - image.samples.begin()) / 3;
   Diagnostic d = failure(fmt::format("pixel ({}, {}) is not finite", pixel % image.width, pixel / image.width));
-  d.hint = "clamp it first: oiiotool in.exr --clamp:max=65504 -o out.exr";
+  d.hint = "mend it first: oiiotool in.exr --fixnan box3 -o out.exr";
   return d;
 }
 

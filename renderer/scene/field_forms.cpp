@@ -64,6 +64,8 @@ Form<Kernel> kernel() {
   });
 }
 
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
 Form<Alpha> alpha() {
   static const Alternatives<Alpha> maps("alpha", "", {}, {"direction", "attribute"});
   enum class Word { Contact, Sum, PerSkeleton };
@@ -72,11 +74,10 @@ Form<Alpha> alpha() {
     return word == Word::Sum ? Alpha(AlphaSum{}) : Alpha(AlphaContact{});
   };
   const auto from_angle = [](double radians) { return Alpha(radians); };
-  return either<Alpha>(
-      {mapped<Alpha>(
-           choice<Word>({{"contact", Word::Contact}, {"sum", Word::Sum}, {"per_skeleton", Word::PerSkeleton}}),
-           from_word),
-       mapped<Alpha>(primitive_alpha(), from_angle), one_of(maps)});
+  Form<Word> word = choice<Word>({{"contact", Word::Contact}, {"sum", Word::Sum}, {"per_skeleton", Word::PerSkeleton}});
+  // What begins like a word is meant as one, so that a slip gets the words as suggestions and not the range of angles.
+  word.recognises = [](const Value& v) { return v.is_scalar() && !v.text.empty() && is_letter(v.text.front()); };
+  return either<Alpha>({mapped<Alpha>(word, from_word), mapped<Alpha>(primitive_alpha(), from_angle), one_of(maps)});
 }
 
 const Table<Blend>& blend_table() {
