@@ -138,11 +138,14 @@ Result<std::unique_ptr<EmbreeSurfaces>> EmbreeSurfaces::make(std::vector<PlacedS
   if (!s->device_) return failure("Embree cannot make a device with \"" + config + "\"");
   s->scene_.reset(rtcNewScene(s->device_.get()));
   rtcSetSceneBuildQuality(s->scene_.get(), RTC_BUILD_QUALITY_HIGH);
-  for (const PlacedSolid& p : s->solids_)
-    for (std::size_t i = 0; i < p.solid->element_count(); ++i) s->bounds_.include(p.solid->element_box(i));
-  const double largest = s->bounds_.empty() ? 0 : largest_coordinate(s->bounds_);
+  Box3 elements;
+  for (const PlacedSolid& p : s->solids_) {
+    s->extent_.include(p.solid->extent());
+    for (std::size_t i = 0; i < p.solid->element_count(); ++i) elements.include(p.solid->element_box(i));
+  }
+  const double largest = elements.empty() ? 0 : largest_coordinate(elements);
   const double margin = std::ldexp(8 * largest, -24);
-  s->padded_bounds_ = s->bounds_.padded(margin);
+  s->padded_bounds_ = elements.padded(margin);
   for (PlacedSolid& p : s->solids_) {
     p.padding = margin;
     attach(s->device_.get(), s->scene_.get(), p);

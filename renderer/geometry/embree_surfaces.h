@@ -37,7 +37,7 @@ class EmbreeSurfaces final : public Surfaces {
   using Surfaces::first_hit;
   std::optional<SurfaceHit> first_hit(const Ray&, RayRecord&) const override;
   bool occluded(const Ray&) const override;
-  Box3 bounds() const override { return bounds_; }
+  Box3 bounds() const override { return extent_; }
 
   const std::vector<PlacedSolid>& solids() const { return solids_; }
   double build_seconds = 0;
@@ -49,7 +49,7 @@ class EmbreeSurfaces final : public Surfaces {
 
   std::vector<PlacedSolid> solids_;
   std::vector<PlacedPlane> planes_;
-  Box3 bounds_;         // of all elements
+  Box3 extent_;         // of all solids
   Box3 padded_bounds_;  // what rays are clipped to
   EmbreeDevice device_;
   EmbreeScene scene_;

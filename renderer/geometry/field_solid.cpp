@@ -20,8 +20,15 @@ FieldSolid::FieldSolid(std::unique_ptr<BlendTracer> tracer, const Affine& world_
       in_world_(world_from_local == Affine{}),
       material_(of_object) {}
 
-Box3 FieldSolid::element_box(std::size_t element) const {
-  const Box3 local = tracer_->cell_box(element);
+Box3 FieldSolid::element_box(std::size_t element) const { return to_world(tracer_->cell_box(element)); }
+
+// The skeletons and one radius: surfaces bulge further only where skeletons are dense.
+Box3 FieldSolid::extent() const {
+  const Box3 skeletons = skeleton_bounds(tracer_->field());
+  return skeletons.empty() ? skeletons : to_world(skeletons.padded(largest_radius(tracer_->field())));
+}
+
+Box3 FieldSolid::to_world(const Box3& local) const {
   if (in_world_) return local;
   Box3 box;
   for (int corner = 0; corner < 8; ++corner)

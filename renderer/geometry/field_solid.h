@@ -16,6 +16,7 @@ class FieldSolid final : public Solid {
 
   std::size_t element_count() const override { return tracer_->cell_count(); }
   Box3 element_box(std::size_t) const override;
+  Box3 extent() const override;
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
   void describe(std::size_t, const Ray&, SurfaceHit&) const override;
   std::size_t primitive_count() const override { return tracer_->field().size(); }
@@ -31,6 +32,7 @@ class FieldSolid final : public Solid {
     double stretch;
   };
   LocalRay to_local(const Ray&) const;
+  Box3 to_world(const Box3&) const;
 
   std::unique_ptr<BlendTracer> tracer_;
   Affine world_from_local_, local_from_world_;

@@ -18,6 +18,12 @@ Box3 MeshSolid::element_box(std::size_t element) const {
   return box;
 }
 
+Box3 MeshSolid::extent() const {
+  Box3 box;
+  for (const Vec3d& p : mesh_.positions) box.include(p);
+  return box;
+}
+
 // Signed volumes over the edges, each computed from the edge's ends in one order, so that neighbouring triangles
 // agree on the side of their common edge and leave no gap (Woop, Benthin, Wald 2013 by other means).
 std::optional<double> MeshSolid::hit(std::size_t element, const Ray& ray, bool, ElementLog&) const {

@@ -12,6 +12,7 @@ class MeshSolid final : public Solid {
 
   std::size_t element_count() const override { return mesh_.triangles.size(); }
   Box3 element_box(std::size_t) const override;
+  Box3 extent() const override;
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
   /// The normal is that of the triangle, on the side the ray comes from.
   void describe(std::size_t, const Ray&, SurfaceHit&) const override;

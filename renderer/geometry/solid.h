@@ -26,6 +26,8 @@ class Solid {
   virtual ~Solid() = default;
   virtual std::size_t element_count() const = 0;
   virtual Box3 element_box(std::size_t element) const = 0;
+  /// About the extent of the body itself; a property of the scene, not of how its space is divided.
+  virtual Box3 extent() const = 0;
   /// t of the first hit in an element, in [ray.t_min, ray.t_max] but not depending on t_max; any hit with `any`.
   virtual std::optional<double> hit(std::size_t element, const Ray&, bool any, ElementLog&) const = 0;
   /// Fills normal, outside and material of a hit whose position is known.
