@@ -71,7 +71,7 @@ Split random_split(Random& random, int degree, double tolerance) {
   const auto pieces = PieceCutter(degree, 2.0).cut(s.blend);
   std::vector<PieceIndex> all(pieces.size());
   std::iota(all.begin(), all.end(), PieceIndex{0});
-  const NearFar near_far(degree, budget_for(tolerance, degree), *block_kernels(""));
+  const NearFar near_far(degree, budget_of(tolerance, degree), *block_kernels(""));
   const auto near = near_far.split(pieces, all, s.center, s.half, s.far);
   for (const PieceIndex i : all)
     if (std::find(near.begin(), near.end(), i) == near.end()) s.far_pieces.push_back(pieces[i]);

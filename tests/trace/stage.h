@@ -5,18 +5,14 @@
 #include <utility>
 #include <vector>
 
+#include "field/trace/blend_tracer.h"
 #include "field/trace/block.h"
 #include "field/trace/cell_tree.h"
+#include "field/trace/precision.h"
 #include "tests/trace/far_space.h"
 #include "tests/trace/random_scene.h"
 
 namespace marrow::test {
-
-/// The error budget that a tolerance of 1e-5 (or 2e-2 for the coarse level) gives one piece.
-inline ErrorBudget budget_for(double tolerance, int degree) {
-  const double share = tolerance * (degree - 1) / 400;
-  return {.field = share, .gradient = share * degree};
-}
 
 inline IsoCurve guarded(const BlendField& field, IsoCurve iso) {
   expect_far_space_is_dropped(field, iso);
@@ -41,9 +37,9 @@ struct Stage {
         cutter(field.degree, iso.critical_field()),
         pieces(cutter.cut(field)),
         kernels(*block_kernels(instruction_set)),
-        coarse(field.degree, budget_for(2e-2, field.degree), kernels),
-        fine(field.degree, budget_for(1e-5, field.degree), kernels),
-        tree(pieces, fine, iso, kernels, field.degree, {}) {}
+        coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
+        fine(field.degree, budget_of(TraceOptions{}.tolerance, field.degree), kernels),
+        tree(pieces, fine, iso, kernels, field.degree, cells_for(pieces.size())) {}
 
   Block::Context context() const { return {pieces, tree, cutter, coarse, fine, iso, kernels, field.degree}; }
   Block block(std::size_t cell) const { return Block(context(), tree.cells()[cell], arena); }
