@@ -1,0 +1,20 @@
+// The table of all kinds of nodes. A new kind is its own file and one row here.
+#pragma once
+
+#include <variant>
+
+#include "field/tree/nodes/crisp.h"
+#include "field/tree/nodes/ricci.h"
+#include "field/tree/nodes/sphere.h"
+#include "field/tree/nodes/twist.h"
+
+namespace marrow {
+
+/// Documentation lists them in this order.
+using AnyNode = std::variant<  //
+    Sphere,                    // primitives
+    Intersection, Difference,  // set operations
+    Ricci,                     // blends
+    Twist>;                    // warps
+
+}  // namespace marrow
