@@ -12,6 +12,7 @@
 #include "field/base/id.h"
 #include "field/math/affine.h"
 #include "field/math/vec3.h"
+#include "field/tree/any_node.h"
 
 namespace marrow {
 
@@ -124,8 +125,15 @@ struct Transform {
   FieldNodeId of;
 };
 
+/// Any of the general nodes of field/tree/any_node.h. Children need not be general nodes.
+struct GeneralNode {
+  AnyNode node;
+  std::vector<FieldNodeId> of;
+  MaterialId material;  ///< of a node without children; invalid: the object's
+};
+
 struct FieldNode {
-  std::variant<Primitive, Blend, Union, Transform> what;
+  std::variant<Primitive, Blend, Union, Transform, GeneralNode> what;
   SourceLocation where;
 };
 

@@ -20,7 +20,7 @@ concept JetNumber = requires {
 template <class X>
 concept Number = std::same_as<X, double> || std::same_as<X, Interval> || JetNumber<X>;
 
-namespace number {
+namespace number_detail {
 
 template <class X>
 struct ScalarOf {
@@ -31,11 +31,11 @@ struct ScalarOf<X> {
   using type = typename X::Scalar;
 };
 
-}  // namespace number
+}  // namespace number_detail
 
 /// double or Interval.
 template <Number X>
-using ScalarOf = typename number::ScalarOf<X>::type;
+using ScalarOf = typename number_detail::ScalarOf<X>::type;
 
 template <Number X>
 inline constexpr bool is_enclosure = std::same_as<ScalarOf<X>, Interval>;
@@ -69,7 +69,7 @@ Jet<Interval, N> hull(const Jet<Interval, N>& a, const Jet<Interval, N>& b) {
   return r;
 }
 
-namespace number {
+namespace number_detail {
 
 constexpr double within(double x, double, double) { return x; }
 inline Interval within(const Interval& x, double lo, double hi) { return clamped(x, {lo, hi}); }
@@ -79,7 +79,7 @@ X within(X x, double lo, double hi) {
   return x;
 }
 
-}  // namespace number
+}  // namespace number_detail
 
 /// left(x) where x < knot and right(x) from there on. Both must agree at the knot, and each side sees only its part.
 template <Number X, class Left, class Right>
@@ -87,7 +87,7 @@ X piecewise(const X& x, double knot, Left left, Right right) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   if (lower(x) >= knot) return right(x);
   if (upper(x) < knot) return left(x);
-  if constexpr (is_enclosure<X>) return hull(left(number::within(x, -inf, knot)), right(number::within(x, knot, inf)));
+  if constexpr (is_enclosure<X>) return hull(left(number_detail::within(x, -inf, knot)), right(number_detail::within(x, knot, inf)));
   else return right(x);
 }
 

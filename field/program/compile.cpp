@@ -1,8 +1,10 @@
 // Walks a description from its root with a stack of placements; no recursion, so no depth limit.
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -156,14 +158,15 @@ class Compiler {
                               open.push_back({t.of, here.from_node * t.parent_from_child});
                             },
                             [&](const Blend& b) { add_part(b, here); },
-                            [&](const Primitive& p) { add_part(blend_of(here.node), here, p.model); }},
+                            [&](const Primitive& p) { add_part(blend_of(here.node), here, p.model); },
+                            [&](const GeneralNode&) { add_tree(here); }},
                  description_[here.node].what);
     }
     if (placements_ > max_placements_)
       report(description_.root, "the field holds over a million copies of its own nodes",
              "place fewer copies inside copies");
     if (!errors_.empty()) return errors_;
-    return FieldProgram(std::move(parts_), std::move(warnings_));
+    return FieldProgram(std::move(parts_), std::move(trees_), std::move(warnings_));
   }
 
  private:
@@ -195,6 +198,10 @@ class Compiler {
   }
 
   void add_part(const Blend& blend, const Placement& here, std::optional<SkeletonModel> model = {}) {
+    parts_.push_back(part_of(blend, here, model));
+  }
+
+  PlacedBlend part_of(const Blend& blend, const Placement& here, std::optional<SkeletonModel> model = {}) {
     PlacedBlend part;
     part.blend = empty_field(blend);
     const bool baked = here.from_node.similarity().has_value();
@@ -211,7 +218,90 @@ class Compiler {
       ++placements_;
       add_child(child, model.value_or(blend.model), part.blend, open);
     }
-    parts_.push_back(std::move(part));
+    return part;
+  }
+
+  // Every node below `here` once, however often it is placed.
+  void add_tree(const Placement& here) {
+    const std::vector<std::size_t> below = nodes_below(here.node);
+    auto nodes = std::make_shared<std::vector<TreeNode>>();
+    std::vector<FieldTree::Record> records;
+    std::vector<std::uint32_t> children;
+    std::vector<double> paths;  // how often a walk from the root of a node visits nodes
+    std::map<std::size_t, std::uint32_t> record_of;
+    nodes->push_back(CrispUnion{});
+    const auto add = [&](TreeNode node, std::span<const FieldNodeId> of, MaterialId material) {
+      FieldTree::Record record{.node = static_cast<std::uint32_t>(nodes->size()),
+                               .first_child = static_cast<std::uint32_t>(children.size()),
+                               .child_count = static_cast<std::uint32_t>(of.size()),
+                               .material = material,
+                               .support = {}};
+      paths.push_back(1);
+      for (const FieldNodeId child : of) {
+        children.push_back(record_of.at(child.index()));
+        paths.back() += paths[children.back()];
+      }
+      nodes->push_back(std::move(node));
+      records.push_back(record);
+    };
+    for (const std::size_t i : below) {
+      record_of[i] = static_cast<std::uint32_t>(records.size());
+      const FieldNodeId id{i};
+      std::visit(Overloaded{[&](const Union& u) { add(CrispUnion{}, u.of, {}); },
+                            [&](const Transform& t) {
+                              add(AffineWarp{t.parent_from_child, t.parent_from_child.inverse()}, {&t.of, 1}, {});
+                            },
+                            [&](const Blend& b) { add(leaf_of(b, id), {}, {}); },
+                            [&](const Primitive& p) { add(leaf_of(blend_of(id), id, p.model), {}, {}); },
+                            [&](const GeneralNode& n) {
+                              add(std::visit([](const auto& kind) { return TreeNode(kind); }, n.node), n.of,
+                                  n.material);
+                            }},
+                 description_[id].what);
+    }
+    if (paths.back() > static_cast<double>(max_placements_)) placements_ = max_placements_ + 1;
+    if (!(here.from_node == Affine{})) {
+      records.push_back({.node = static_cast<std::uint32_t>(nodes->size()),
+                         .first_child = static_cast<std::uint32_t>(children.size()),
+                         .child_count = 1,
+                         .material = {},
+                         .support = {}});
+      children.push_back(static_cast<std::uint32_t>(records.size() - 2));
+      nodes->push_back(AffineWarp{here.from_node, here.from_node.inverse()});
+    }
+    trees_.emplace_back(std::move(nodes), std::move(records), std::move(children));
+  }
+
+  BlendLeaf leaf_of(const Blend& blend, FieldNodeId id, std::optional<SkeletonModel> model = {}) {
+    return {std::make_shared<BlendField>(part_of(blend, {id, Affine{}}, model).blend)};
+  }
+
+  // Without what stands inside blends, children before parents.
+  std::vector<std::size_t> nodes_below(FieldNodeId root) const {
+    std::vector<bool> seen(root.index() + 1, false);
+    std::vector<FieldNodeId> open{root};
+    seen[root.index()] = true;
+    const auto enter = [&](std::span<const FieldNodeId> children) {
+      for (const FieldNodeId child : children) {
+        if (seen[child.index()]) continue;
+        seen[child.index()] = true;
+        open.push_back(child);
+      }
+    };
+    while (!open.empty()) {
+      const FieldNode& node = description_[open.back()];
+      open.pop_back();
+      std::visit(Overloaded{[](const Primitive&) {}, [](const Blend&) {},
+                            [&](const Transform& t) {
+                              enter({&t.of, 1});
+                            },
+                            [&](const auto& n) { enter(n.of); }},
+                 node.what);
+    }
+    std::vector<std::size_t> indices;
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      if (seen[i]) indices.push_back(i);
+    return indices;
   }
 
   void add_child(const Placement& child, SkeletonModel model, BlendField& field, std::vector<Placement>& open) {
@@ -224,7 +314,8 @@ class Compiler {
                             open.push_back({t.of, child.from_node * t.parent_from_child});
                           },
                           [&](const Union&) { report_nesting(child.node, "union"); },
-                          [&](const Blend&) { report_nesting(child.node, "blend"); }},
+                          [&](const Blend&) { report_nesting(child.node, "blend"); },
+                          [&](const GeneralNode& n) { report_nesting(child.node, std::string(info_of(n.node).name)); }},
                description_[child.node].what);
   }
 
@@ -262,6 +353,7 @@ class Compiler {
   const FieldDescription& description_;
   std::vector<bool> reported_;
   std::vector<PlacedBlend> parts_;
+  std::vector<FieldTree> trees_;
   Diagnostics errors_, warnings_;
   ContactAngles contact_;
   std::size_t placements_ = 0, max_placements_;

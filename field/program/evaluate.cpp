@@ -11,16 +11,34 @@ double value_of(const PlacedBlend& part, const Vec3d& p) {
 
 struct Largest {
   const PlacedBlend* part = nullptr;
+  const FieldTree* tree = nullptr;
   double value = 0;
 };
 
 Largest largest_part(const FieldProgram& program, const Vec3d& p) {
   Largest best;
+  const auto is_first = [&] { return best.part == nullptr && best.tree == nullptr; };
   for (const PlacedBlend& part : program.parts()) {
     const double v = value_of(part, p);
-    if (best.part == nullptr || v > best.value) best = {&part, v};
+    if (is_first() || v > best.value) best = {&part, nullptr, v};
+  }
+  for (const FieldTree& tree : program.trees()) {
+    const double v = value(tree, p);
+    if (is_first() || v > best.value) best = {nullptr, &tree, v};
   }
   return best;
+}
+
+FieldSample sample_of(const PlacedBlend& part, const Vec3d& p) {
+  const BlendSample s = evaluate_part(part, p);
+  const Vec3d local = part.is_in_world() ? p : part.local_from_world.point(p);
+  return {.value = s.corrected, .gradient = s.corrected_gradient, .material = strongest_material(part.blend, local)};
+}
+
+FieldSample sample_of(const FieldTree& tree, const Vec3d& p) {
+  using X = Jet<double, 3>;
+  const X v = value(tree, Vec3<X>{X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)});
+  return {.value = v.value, .gradient = {v.slope[0], v.slope[1], v.slope[2]}, .material = strongest_material(tree, p)};
 }
 
 }  // namespace
@@ -34,16 +52,14 @@ BlendSample evaluate_part(const PlacedBlend& part, const Vec3d& p) {
 }
 
 FieldSample evaluate(const FieldProgram& program, const Vec3d& p) {
-  const auto parts = program.parts();
-  if (parts.empty()) return {};
-  const PlacedBlend& part = parts.size() == 1 ? parts.front() : *largest_part(program, p).part;
-  const BlendSample s = evaluate_part(part, p);
-  const Vec3d local = part.is_in_world() ? p : part.local_from_world.point(p);
-  return {.value = s.corrected, .gradient = s.corrected_gradient, .material = strongest_material(part.blend, local)};
+  if (program.trees().empty() && program.parts().size() == 1) return sample_of(program.parts().front(), p);
+  const Largest largest = largest_part(program, p);
+  if (largest.tree != nullptr) return sample_of(*largest.tree, p);
+  return largest.part != nullptr ? sample_of(*largest.part, p) : FieldSample{};
 }
 
 double value(const FieldProgram& program, const Vec3d& p) { return largest_part(program, p).value; }
 
-bool is_single_blend(const FieldProgram& program) { return program.parts().size() == 1; }
+bool is_single_blend(const FieldProgram& program) { return program.parts().size() == 1 && program.trees().empty(); }
 
 }  // namespace marrow

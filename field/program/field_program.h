@@ -1,4 +1,5 @@
-// A field ready for evaluation: placed blends under a crisp union. Immutable; cheap to share by reference.
+// A field ready for evaluation: placed blends and general trees under a crisp union. Immutable; cheap to share by
+// reference.
 #pragma once
 
 #include <span>
@@ -10,6 +11,7 @@
 #include "field/blend/blend_field.h"
 #include "field/description/field_node.h"
 #include "field/math/affine.h"
+#include "field/tree/field_tree.h"
 
 namespace marrow {
 
@@ -22,20 +24,24 @@ struct PlacedBlend {
   bool is_in_world() const { return world_from_local == Affine{}; }
 };
 
-/// value(p) = max over parts of the part's corrected field; the surface is value = iso(), inside is above.
+/// value(p) = max over the corrected fields of the parts and the values of the trees; the surface is value = iso(),
+/// inside is above.
 class FieldProgram {
  public:
   FieldProgram() = default;
   /// `warnings` are what compile() has to tell besides errors.
-  explicit FieldProgram(std::vector<PlacedBlend> parts, Diagnostics warnings = {})
-      : parts_(std::move(parts)), warnings_(std::move(warnings)) {}
+  explicit FieldProgram(std::vector<PlacedBlend> parts, std::vector<FieldTree> trees = {}, Diagnostics warnings = {})
+      : parts_(std::move(parts)), trees_(std::move(trees)), warnings_(std::move(warnings)) {}
 
   std::span<const PlacedBlend> parts() const { return parts_; }
+  /// What is not a blend, in world coordinates.
+  std::span<const FieldTree> trees() const { return trees_; }
   static constexpr double iso() { return 1; }
   const Diagnostics& warnings() const { return warnings_; }
 
  private:
   std::vector<PlacedBlend> parts_;
+  std::vector<FieldTree> trees_;
   Diagnostics warnings_;
 };
 

@@ -14,6 +14,7 @@
 #include "field/base/overloaded.h"
 #include "field/base/result.h"
 #include "field/kernel/inverse_family.h"
+#include "field/program/validate_node.h"
 #include "field/skeleton/subdivision_curve.h"
 
 namespace marrow {
@@ -171,6 +172,10 @@ void check(const Blend& blend, Findings& findings) {
 
 void check(const Union& united, Findings& findings) {
   if (united.of.empty()) findings.add("a union of nothing", "list fields under `of:`");
+}
+
+void check(const GeneralNode& node, Findings& findings) {
+  for (auto& [message, hint] : problems_of(node.node, node.of.size())) findings.add(message, hint);
 }
 
 void check(const Transform& transform, Findings& findings) {

@@ -17,4 +17,8 @@ using AnyNode = std::variant<  //
     Ricci,                     // blends
     Twist>;                    // warps
 
+inline const NodeInfo& info_of(const AnyNode& node) {
+  return std::visit([]<class Kind>(const Kind&) -> const NodeInfo& { return Kind::info; }, node);
+}
+
 }  // namespace marrow

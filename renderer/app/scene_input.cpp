@@ -77,12 +77,17 @@ Box3 extent(const FieldProgram& program) {
     const Box3 skeletons = skeleton_bounds(part.blend);
     if (!skeletons.empty()) box.include(placed(part.world_from_local, skeletons.padded(largest_radius(part.blend))));
   }
+  for (const auto& tree : program.trees()) {
+    const Box3 surface = surface_bounds(tree);
+    if (!surface.empty() && is_finite(surface.size())) box.include(surface);
+  }
   return box;
 }
 
 std::size_t primitive_count(const FieldProgram& program) {
   std::size_t count = 0;
   for (const auto& part : program.parts()) count += part.blend.size();
+  for (const auto& tree : program.trees()) count += leaf_count(tree);
   return count;
 }
 

@@ -14,6 +14,7 @@
 #include "renderer/geometry/embree_surfaces.h"
 #include "renderer/geometry/field_solid.h"
 #include "renderer/geometry/mesh_solid.h"
+#include "renderer/geometry/tree_solid.h"
 
 namespace marrow {
 namespace {
@@ -48,16 +49,20 @@ class Builder {
       problems.insert(problems.end(), program.why().begin(), program.why().end());
       return;
     }
-    for (const PlacedBlend& part : program->parts()) {
-      auto solid = FieldSolid::make(part, object.material, {.instruction_set = options_.isa});
-      if (solid) {
-        solids.push_back({std::move(*solid), id});
-        continue;
-      }
-      for (Diagnostic d : solid.why()) {
-        if (d.where.line == 0) d.where = object.where;
-        problems.push_back(std::move(d));
-      }
+    for (const PlacedBlend& part : program->parts())
+      add(FieldSolid::make(part, object.material, {.instruction_set = options_.isa}), object, id);
+    for (const FieldTree& tree : program->trees()) add(TreeSolid::make(tree, object.material), object, id);
+  }
+
+  template <class SolidPointer>
+  void add(Result<SolidPointer> solid, const ObjectDescription& object, ObjectId id) {
+    if (solid) {
+      solids.push_back({std::move(*solid), id});
+      return;
+    }
+    for (Diagnostic d : solid.why()) {
+      if (d.where.line == 0) d.where = object.where;
+      problems.push_back(std::move(d));
     }
   }
 

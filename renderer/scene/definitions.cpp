@@ -21,15 +21,15 @@ void collect_uses(const Value& value, std::vector<std::string>& uses) {
   }
 }
 
-FieldNode moved_by(FieldNode node, std::size_t offset) {
+FieldNode moved_by(FieldNode moved, std::size_t offset) {
   const auto move_list = [&](std::vector<FieldNodeId>& of) {
     for (FieldNodeId& id : of) id = FieldNodeId{id.index() + offset};
   };
-  std::visit(
-      Overloaded{[](Primitive&) {}, [&](Blend& blend) { move_list(blend.of); }, [&](Union& all) { move_list(all.of); },
-                 [&](Transform& transform) { transform.of = FieldNodeId{transform.of.index() + offset}; }},
-      node.what);
-  return node;
+  std::visit(Overloaded{[](Primitive&) {}, [&](Blend& blend) { move_list(blend.of); },
+                        [&](Union& all) { move_list(all.of); }, [&](GeneralNode& node) { move_list(node.of); },
+                        [&](Transform& transform) { transform.of = FieldNodeId{transform.of.index() + offset}; }},
+             moved.what);
+  return moved;
 }
 
 }  // namespace
@@ -99,11 +99,13 @@ std::optional<FieldNodeId> Definitions::place(const std::string& name, const Val
                                               Reader& reader) const {
   const auto found = fragments_.find(name);
   if (found == fragments_.end()) return reader.unknown("subtree", name, at.place, names());
-  if (!found->second || !reader.spend_nodes(found->second->nodes.size(), at.place)) return std::nullopt;
+  if (!found->second) return std::nullopt;
+  if (const auto there = reader.placed.find(name); there != reader.placed.end()) return there->second;
+  if (!reader.spend_nodes(found->second->nodes.size(), at.place)) return std::nullopt;
   const FieldDescription& part = *found->second;
   const std::size_t offset = field.nodes.size();
   for (const FieldNode& node : part.nodes) field.nodes.push_back(moved_by(node, offset));
-  return FieldNodeId{part.root.index() + offset};
+  return reader.placed[name] = FieldNodeId{part.root.index() + offset};
 }
 
 }  // namespace marrow

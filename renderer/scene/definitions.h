@@ -13,8 +13,8 @@ namespace marrow {
 
 class Reader;
 
-/// Each subtree is read once and copied where it is used, so its mistakes are reported once, no chain of uses is
-/// too long for the stack, and a bomb of uses meets a budget of nodes before memory.
+/// Each subtree is read once and stands once in each field that uses it, so its mistakes are reported once, no chain
+/// of uses is too long for the stack, and uses of uses cost no memory.
 class Definitions {
  public:
   /// Of all subtrees with what they use; less than a scene may have, since they are kept beside it.
@@ -24,7 +24,8 @@ class Definitions {
   void read(const Value& defs, Reader&);
   bool knows(const std::string& name) const { return fragments_.contains(name); }
   std::vector<std::string> names() const;
-  /// Adds a copy to `field`. Nothing when the subtree has mistakes, which are reported, or the budget is spent.
+  /// The subtree in `field`, which is reader.field; added by the first use. Nothing when the subtree has mistakes,
+  /// which are reported, or the budget is spent.
   std::optional<FieldNodeId> place(const std::string& name, const Value& at, FieldDescription& field, Reader&) const;
 
  private:

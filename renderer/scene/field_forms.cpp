@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "field/kernel/inverse_family.h"
+#include "renderer/scene/node_forms.h"
 #include "renderer/scene/primitive_forms.h"
 
 namespace marrow {
@@ -165,40 +166,22 @@ Form<FieldNodeId> use() {
 }
 
 const Alternatives<FieldNodeId>& field_nodes() {
-  static const Alternatives<FieldNodeId> nodes("node", "One node of a field.",
-                                               {{"point", added(point_form(), as_it_is)},
-                                                {"segment", added(segment_form(), as_it_is)},
-                                                {"polyline", added(polyline_form(), as_it_is)},
-                                                {"curve", added(curve_form(), as_it_is)},
-                                                {"triangle", added(triangle_form(), as_it_is)},
-                                                {"circle", added(circle_form(), as_it_is)},
-                                                {"arc", added(arc_form(), as_it_is)},
-                                                {"skeleton", added(skeleton_form(), as_it_is)},
-                                                {"blend", added(map_of(blend_table()), as_it_is)},
-                                                {"union", added(map_of(union_table()), as_it_is)},
-                                                {"transform", added(map_of(transform_table()), transform_of)},
-                                                {"use", use()}},
-                                               {"sphere",
-                                                "cylinder",
-                                                "cone",
-                                                "box",
-                                                "torus",
-                                                "plane",
-                                                "ellipsoid",
-                                                "sum",
-                                                "ricci",
-                                                "soft_union",
-                                                "intersection",
-                                                "difference",
-                                                "contact",
-                                                "twist",
-                                                "taper",
-                                                "bend",
-                                                "shear",
-                                                "soft_intersection",
-                                                "soft_difference",
-                                                "weighted_blend",
-                                                "local_convolution"});
+  static const Alternatives<FieldNodeId> nodes = [] {
+    std::vector<std::pair<std::string, Form<FieldNodeId>>> all{{"point", added(point_form(), as_it_is)},
+                                                               {"segment", added(segment_form(), as_it_is)},
+                                                               {"polyline", added(polyline_form(), as_it_is)},
+                                                               {"curve", added(curve_form(), as_it_is)},
+                                                               {"triangle", added(triangle_form(), as_it_is)},
+                                                               {"circle", added(circle_form(), as_it_is)},
+                                                               {"arc", added(arc_form(), as_it_is)},
+                                                               {"skeleton", added(skeleton_form(), as_it_is)},
+                                                               {"blend", added(map_of(blend_table()), as_it_is)},
+                                                               {"union", added(map_of(union_table()), as_it_is)}};
+    for (auto& form : general_node_forms()) all.push_back(std::move(form));
+    all.emplace_back("transform", added(map_of(transform_table()), transform_of));
+    all.emplace_back("use", use());
+    return Alternatives<FieldNodeId>("node", "One node of a field.", std::move(all));
+  }();
   return nodes;
 }
 
@@ -214,6 +197,7 @@ Form<FieldNodeId> field_node() {
 
 bool read_field(const Value& v, Reader& reader, FieldDescription& field) {
   reader.field = &field;
+  reader.placed.clear();
   const auto root = field_node().read(v, reader);
   reader.field = nullptr;
   if (root) field.root = *root;
@@ -235,9 +219,14 @@ std::vector<const TableInfo*> field_tables() {
   for (const TableInfo* table : {&kernel_table().info, &blend_table().info, &union_table().info,
                                  &transform_table().info, &rotation_table().info})
     tables.push_back(table);
+  for (const TableInfo* table : general_node_tables()) tables.push_back(table);
   return tables;
 }
 
-std::vector<const AlternativesInfo*> field_alternatives() { return {&field_nodes().info}; }
+std::vector<const AlternativesInfo*> field_alternatives() {
+  std::vector<const AlternativesInfo*> all{&field_nodes().info};
+  for (const AlternativesInfo* info : general_node_alternatives()) all.push_back(info);
+  return all;
+}
 
 }  // namespace marrow

@@ -1,0 +1,22 @@
+// Certified bounds of a blend's corrected field over a box.
+#pragma once
+
+#include "field/blend/blend_field.h"
+#include "field/number/interval.h"
+
+namespace marrow {
+
+struct BlendBounds {
+  Interval value;
+  Vec3<Interval> gradient;  ///< of the corrected field, everywhere in the box
+};
+
+/// From one exact sample in the middle of the box and bounds of the derivatives of each primitive, which follow from
+/// its least distance: widths shrink with the square of the box for the sums, linearly for the corrected field.
+/// Boxes that reach a skeleton have no upper bound.
+BlendBounds blend_bounds(const BlendField&, const Box3&);
+
+/// The box outside which the corrected field is below `level` > 0.
+Box3 blend_extent(const BlendField&, double level);
+
+}  // namespace marrow

@@ -1,0 +1,22 @@
+// The first crossing of a surface along a piece of a ray, found with enclosures.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "field/math/ray.h"
+#include "field/tree/field_tree.h"
+
+namespace marrow {
+
+struct CrossingSearch {
+  std::optional<double> t;                                     ///< of the crossing
+  double undecided = std::numeric_limits<double>::infinity();  ///< where a gap begins that nothing could decide
+  std::uint32_t evaluations = 0;
+};
+
+/// Searches begin <= t <= end for the first change of side; with `any`, for any. A crossing is placed to some ulps.
+CrossingSearch find_crossing(const FieldTree&, const Ray&, double begin, double end, bool any);
+
+}  // namespace marrow

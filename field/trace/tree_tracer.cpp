@@ -1,0 +1,140 @@
+#include "field/trace/tree_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <tbb/parallel_for.h>
+
+#include "field/trace/cell_tree.h"
+#include "field/trace/crossing.h"
+
+namespace marrow {
+namespace {
+
+// 2^8 cells along the longest side: finer cells cost more to build than they save.
+constexpr int max_level = 8;
+// Neighbours overlap so that no root falls between them by rounding; the restricted trees hold a little farther.
+constexpr double overlap = 1e-9, validity = 4e-9;
+
+Vec3<Interval> span_of(const Box3& box) {
+  return {{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
+}
+
+Vec3<Jet<Interval, 3>> with_slopes(const Vec3<Interval>& p) {
+  using X = Jet<Interval, 3>;
+  return {X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)};
+}
+
+bool excludes_zero(const Interval& x) { return x.lo > 0 || x.hi < 0; }
+
+struct Branch {
+  Vec3d center;
+  double half;
+  FieldTree tree;
+  bool is_cell;
+
+  Box3 box() const { return Box3{center, center}.padded(half); }
+};
+
+// What is to be done with a part of space.
+std::optional<Branch> examined(const FieldTree& parent, const Vec3d& center, double half, int level) {
+  Branch b{center, half, restricted(parent, Box3{center, center}.padded(half * (1 + validity))), false};
+  const auto f = value(b.tree, with_slopes(span_of(b.box().padded(half * validity))));
+  if (!f.value.contains(1)) return {};
+  const bool one_sheet = excludes_zero(f.slope[0]) || excludes_zero(f.slope[1]) || excludes_zero(f.slope[2]);
+  b.is_cell = level >= max_level || (one_sheet && level >= 2);
+  return b;
+}
+
+// The cube of a box, with a little room.
+Branch root_of(const FieldTree& tree, const Box3& bounds) {
+  const Vec3d size = bounds.size();
+  return {bounds.center(), 0.5 * max_component(size) * (1 + 1e-6), tree, false};
+}
+
+}  // namespace
+
+Result<TreeTracer> TreeTracer::make(FieldTree tree) {
+  const Box3 bounds = surface_bounds(tree);
+  if (!bounds.empty() && !(is_finite(bounds.lower) && is_finite(bounds.upper)))
+    return failure("the surface of this field has no end; intersect it with something bounded");
+  TreeTracer made(std::move(tree), bounds);
+  if (!bounds.empty()) made.divide();
+  return made;
+}
+
+// Level by level, so that the order of cells does not depend on threads.
+void TreeTracer::divide() {
+  std::vector<Branch> level{root_of(tree_, bounds_)};
+  for (int depth = 1; !level.empty(); ++depth) {
+    std::vector<std::optional<Branch>> octants(level.size() * 8);
+    tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) {
+      const Branch& b = level[i];
+      for (int octant = 0; octant < 8; ++octant)
+        octants[i * 8 + static_cast<std::size_t>(octant)] =
+            examined(b.tree, octant_center(b.center, b.half, octant), b.half / 2, depth);
+    });
+    level.clear();
+    for (std::optional<Branch>& b : octants) {
+      if (!b) continue;
+      if (b->is_cell) cells_.push_back({b->box(), std::move(b->tree)});
+      else level.push_back(*std::move(b));
+    }
+  }
+}
+
+namespace {
+
+// The part of the ray inside the box and a little beyond.
+Interval clip(const Box3& cell, const Ray& ray) {
+  const Box3 box = cell.padded(0.5 * cell.size().x * overlap);
+  Interval t{ray.t_min, Box3::inf};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double o = ray.origin[i], d = ray.direction.vec()[i];
+    if (d == 0) {
+      if (o < box.lower[i] || o > box.upper[i]) return {1, 0};
+      continue;
+    }
+    const double a = (box.lower[i] - o) / d, b = (box.upper[i] - o) / d;
+    t.lo = std::max(t.lo, std::min(a, b));
+    t.hi = std::min(t.hi, std::max(a, b));
+  }
+  return t;
+}
+
+}  // namespace
+
+std::optional<CellHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, bool any, CellLog& log) const {
+  const Cell& c = cells_[cell];
+  Interval t = clip(c.box, ray);
+  log.enter = t.lo;
+  if (any) t.hi = std::min(t.hi, ray.t_max);
+  if (!(t.lo <= t.hi)) return {};
+  const CrossingSearch search = find_crossing(c.tree, ray, t.lo, t.hi, any);
+  log.evaluations += search.evaluations;
+  log.undecided = std::min(log.undecided, search.undecided);
+  return search.t && *search.t <= ray.t_max ? std::optional(CellHit{*search.t}) : std::nullopt;
+}
+
+// Beside the surface: the shortest of growing steps after which the field is certainly below 1.
+SurfacePoint TreeTracer::surface_at(std::size_t cell, const Vec3d& position) const {
+  using X = Jet<double, 3>;
+  const X f = value(tree_, Vec3<X>{X::variable(position.x, 0), X::variable(position.y, 1), X::variable(position.z, 2)});
+  SurfacePoint out{.normal = normalize(Vec3d{-f.slope[0], -f.slope[1], -f.slope[2]}), .outside = position};
+  const double size = std::max(largest_coordinate(cells_[cell].box), cells_[cell].box.size().x);
+  for (double step = 4 * rounding::ulp * size; step < size; step *= 2) {
+    out.outside = position + out.normal * step;
+    const Vec3d& p = out.outside;
+    if (value(tree_, Vec3<Interval>{Interval(p.x), Interval(p.y), Interval(p.z)}).hi < 1) break;
+  }
+  return out;
+}
+
+std::size_t TreeTracer::bytes() const {
+  std::size_t bytes = cells_.capacity() * sizeof(Cell);
+  for (const Cell& c : cells_) bytes += c.tree.records().size() * (sizeof(FieldTree::Record) + sizeof(std::uint32_t));
+  return bytes;
+}
+
+}  // namespace marrow

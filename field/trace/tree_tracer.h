@@ -1,0 +1,53 @@
+// Certified ray tracing of a tree of general nodes.
+//
+// An octree over the box that can hold surface: parts that bounds prove to be all outside or all inside are dropped,
+// the others are divided until the surface in them is one sheet to all appearances. Each cell keeps the tree restricted
+// to it. Along a ray, enclosures of the field and of its slope tell intervals without a root from those with exactly
+// one; what remains is halved.   [interval Newton isolation: Moore 1966; pruned programs: Keeter 2020]
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "field/base/result.h"
+#include "field/math/ray.h"
+#include "field/trace/blend_tracer.h"
+#include "field/tree/field_tree.h"
+
+namespace marrow {
+
+/// Immutable; safe to use from many threads.
+class TreeTracer {
+ public:
+  /// Errors: a field whose surface is not bounded, or may be anywhere.
+  static Result<TreeTracer> make(FieldTree);
+
+  std::size_t cell_count() const { return cells_.size(); }
+  const Box3& cell_box(std::size_t cell) const { return cells_[cell].box; }
+
+  /// The first crossing of the surface, from either side, inside a cell with t in [ray.t_min, ray.t_max]; t does not
+  /// depend on ray.t_max. With `any`, any crossing. `undecided` of the log: a gap of some ulps, without a change of
+  /// side from end to end, in which no bound excludes a touch.
+  std::optional<CellHit> first_hit(std::size_t cell, const Ray&, bool any, CellLog&) const;
+  SurfacePoint surface_at(std::size_t cell, const Vec3d& position) const;
+
+  const FieldTree& tree() const { return tree_; }
+  /// Bounds of the surface.
+  const Box3& bounds() const { return bounds_; }
+  std::size_t bytes() const;
+
+ private:
+  struct Cell {
+    Box3 box;
+    FieldTree tree;  ///< equal to the whole tree in the box and a little beyond
+  };
+  TreeTracer(FieldTree tree, const Box3& bounds) : tree_(std::move(tree)), bounds_(bounds) {}
+  void divide();
+
+  FieldTree tree_;
+  Box3 bounds_;
+  std::vector<Cell> cells_;
+};
+
+}  // namespace marrow

@@ -1,0 +1,41 @@
+// The corrected field of a blend over the types of number of general trees.
+#pragma once
+
+#include "field/blend/blend_bounds.h"
+#include "field/blend/blend_field.h"
+#include "field/number/functions.h"
+
+namespace marrow::tree {
+
+/// value and gradient known as functions of the position, composed with the derivatives of the position.
+template <std::size_t N, class T>
+Jet<T, N> composed(const T& value, const Vec3<T>& gradient, const Vec3<Jet<T, N>>& p) {
+  Jet<T, N> r(value);
+  for (std::size_t i = 0; i < N; ++i)
+    r.slope[i] = gradient.x * p.x.slope[i] + gradient.y * p.y.slope[i] + gradient.z * p.z.slope[i];
+  return r;
+}
+
+inline double blend_value(const BlendField& blend, const Vec3d& p) { return corrected_value(blend, p); }
+
+template <std::size_t N>
+Jet<double, N> blend_value(const BlendField& blend, const Vec3<Jet<double, N>>& p) {
+  const BlendSample s = evaluate(blend, {p.x.value, p.y.value, p.z.value});
+  return composed(s.corrected, s.corrected_gradient, p);
+}
+
+HessianJet blend_value(const BlendField&, const Vec3<HessianJet>&);
+
+inline Box3 box_of(const Vec3<Interval>& p) { return {{p.x.lo, p.y.lo, p.z.lo}, {p.x.hi, p.y.hi, p.z.hi}}; }
+
+inline Interval blend_value(const BlendField& blend, const Vec3<Interval>& p) {
+  return blend_bounds(blend, box_of(p)).value;
+}
+
+template <std::size_t N>
+Jet<Interval, N> blend_value(const BlendField& blend, const Vec3<Jet<Interval, N>>& p) {
+  const BlendBounds b = blend_bounds(blend, box_of({p.x.value, p.y.value, p.z.value}));
+  return composed(b.value, b.gradient, p);
+}
+
+}  // namespace marrow::tree

@@ -1,0 +1,195 @@
+#include "field/tree/field_tree.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "field/blend/blend_bounds.h"
+#include "field/tree/machine.h"
+
+namespace marrow {
+namespace {
+
+constexpr double inf = Box3::inf;
+constexpr Box3 all_space{{-inf, -inf, -inf}, {inf, inf, inf}};
+
+// The box that an operator can be above `level` in, from the boxes of its children.
+Box3 reach_of(const TreeNode& node, std::span<const Box3> children, double level) {
+  return std::visit(
+      [&]<class Node>(const Node& n) -> Box3 {
+        if constexpr (std::same_as<Node, BlendLeaf>) return level > 0 ? blend_extent(*n.field, level) : all_space;
+        else if constexpr (requires { n.support(); }) return n.support();
+        else if constexpr (requires { n.support(children[0]); }) return n.support(children[0]);
+        else if constexpr (requires { n.support(children); }) return n.support(children);
+        else {
+          Box3 hull;
+          for (const Box3& b : children) hull.include(b);
+          return hull;
+        }
+      },
+      node);
+}
+
+double level_of_children(const TreeNode& node, double level, std::size_t count) {
+  return std::visit(
+      [&]<class Node>(const Node& n) {
+        if constexpr (requires { n.child_level(level, count); }) return n.child_level(level, count);
+        else return level;
+      },
+      node);
+}
+
+}  // namespace
+
+Box3 AffineWarp::support(const Box3& child) const {
+  if (child.empty()) return child;
+  Box3 box;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3d c{corner & 1 ? child.lower.x : child.upper.x, corner & 2 ? child.lower.y : child.upper.y,
+                  corner & 4 ? child.lower.z : child.upper.z};
+    if (!is_finite(c)) return all_space;
+    box.include(parent_from_child.point(c));
+  }
+  return box.padded(1e-14 * (largest_coordinate(box) + length(parent_from_child.translation)));
+}
+
+FieldTree::FieldTree(std::shared_ptr<const std::vector<TreeNode>> nodes, std::vector<Record> records,
+                     std::vector<std::uint32_t> children)
+    : nodes_(std::move(nodes)), records_(std::move(records)), children_(std::move(children)) {
+  std::vector<Box3> boxes;
+  for (Record& r : records_) {
+    boxes.clear();
+    for (const std::uint32_t c : this->children(r)) boxes.push_back(records_[c].support);
+    r.support = reach_of(node(r), boxes, 0);
+  }
+}
+
+std::size_t leaf_count(const FieldTree& tree) {
+  std::size_t count = 0;
+  for (const FieldTree::Record& r : tree.records()) {
+    if (r.child_count > 0) continue;
+    const auto* blend = std::get_if<BlendLeaf>(&tree.node(r));
+    count += blend != nullptr ? blend->field->size() : 1;
+  }
+  return count;
+}
+
+// From the root down each node learns the level that its parents care about, the least of several; then boxes go up.
+Box3 surface_bounds(const FieldTree& tree) {
+  const auto records = tree.records();
+  if (records.empty()) return {};
+  std::vector<double> level(records.size(), inf);
+  level.back() = 1;
+  for (std::size_t i = records.size(); i-- > 0;) {
+    const auto children = tree.children(records[i]);
+    const double wanted = level_of_children(tree.node(records[i]), level[i], children.size());
+    for (const std::uint32_t c : children) level[c] = std::min(level[c], wanted);
+  }
+  std::vector<Box3> reach(records.size()), boxes;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    boxes.clear();
+    for (const std::uint32_t c : tree.children(records[i])) boxes.push_back(reach[c]);
+    reach[i] = reach_of(tree.node(records[i]), boxes, level[i]);
+  }
+  return reach.back();
+}
+
+namespace {
+
+// What a node is inside the box: bounds, and the record in the new tree that stands for it.
+struct Part {
+  static constexpr std::uint32_t none = 0xffffffff;
+  Interval value;
+  std::uint32_t record = none;  ///< none: 0 all over the box
+};
+
+class Restriction {
+ public:
+  explicit Restriction(const FieldTree& tree) : tree_(tree) {}
+
+  Part add(std::uint32_t index, const Vec3<Interval>& p, std::span<const Part> children) {
+    const FieldTree::Record& old = tree_.records()[index];
+    const TreeNode& node = tree_.node(old);
+    select(node, children);
+    if (kept_.size() == 1 && is_idle_with_one(node)) return kept_[0];
+    if (kept_.empty() && old.child_count > 0) return {};
+    values_.clear();
+    for (const Part& c : kept_) values_.push_back(c.value);
+    const Interval v = tree::value_of_node<Interval>(node, p, values_);
+    if (v == Interval(0)) return {};
+    FieldTree::Record made = old;
+    made.first_child = static_cast<std::uint32_t>(children_.size());
+    made.child_count = static_cast<std::uint32_t>(kept_.size());
+    for (const Part& c : kept_) children_.push_back(c.record);
+    records_.push_back(made);
+    return {v, static_cast<std::uint32_t>(records_.size() - 1)};
+  }
+
+  FieldTree tree(std::uint32_t root) && {
+    if (root == Part::none) records_.clear();
+    else records_.resize(root + 1);  // what stands behind the root was an operand that lost
+    return FieldTree(tree_.nodes(), std::move(records_), std::move(children_));
+  }
+
+ private:
+  // A union of one is that one.
+  static bool is_idle_with_one(const TreeNode& node) { return std::holds_alternative<CrispUnion>(node); }
+
+  // The operands that count. An operator that needs all of its operands in place gets zeros as they are.
+  void select(const TreeNode& node, std::span<const Part> children) {
+    kept_.clear();
+    std::visit(
+        [&]<class Node>(const Node&) {
+          double least = -inf;  // an operand below this is never the largest
+          if constexpr (std::same_as<Node, CrispUnion>)
+            for (const Part& c : children) least = std::max(least, c.value.lo);
+          bool any = false;
+          for (const Part& c : children) any = any || c.record != Part::none;
+          if (!any) return;
+          for (const Part& c : children) {
+            if constexpr (requires { requires Node::ignores_zeros; }) {
+              if (c.record == Part::none || c.value.hi < least) continue;
+              kept_.push_back(c);
+            } else {
+              kept_.push_back(c.record == Part::none ? nothing() : c);
+            }
+          }
+        },
+        node);
+  }
+
+  // An empty union is 0 everywhere.
+  Part nothing() {
+    if (zero_ == Part::none) {
+      FieldTree::Record r;
+      r.node = static_cast<std::uint32_t>(index_of_union());
+      r.support = Box3{};
+      records_.push_back(r);
+      zero_ = static_cast<std::uint32_t>(records_.size() - 1);
+    }
+    return {Interval(0), zero_};
+  }
+  // compile() puts a union into every list of nodes, at the front.
+  static std::size_t index_of_union() { return 0; }
+
+  const FieldTree& tree_;
+  std::vector<FieldTree::Record> records_;
+  std::vector<std::uint32_t> children_;
+  std::vector<Part> kept_;
+  std::vector<Interval> values_;
+  std::uint32_t zero_ = Part::none;
+};
+
+}  // namespace
+
+FieldTree restricted(const FieldTree& tree, const Box3& box) {
+  const Vec3<Interval> p{{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
+  Restriction restriction(tree);
+  tree::Machine<Interval, Part> machine;
+  const Part root =
+      machine.run(tree, p, Part{}, [&](std::uint32_t record, const Vec3<Interval>& at, std::span<const Part> children) {
+        return restriction.add(record, at, children);
+      });
+  return std::move(restriction).tree(root.record);
+}
+
+}  // namespace marrow

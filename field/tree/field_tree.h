@@ -1,0 +1,106 @@
+// A tree of general nodes, ready for evaluation: the field of what is not one blend or a crisp union of blends.
+//
+// Nodes are records in one array, children before parents; a node may be the child of many. Nothing here recurses, so
+// that depth costs memory only, and a part of space in which a node is 0 costs one test of a box.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "field/base/id.h"
+#include "field/blend/blend_field.h"
+#include "field/math/affine.h"
+#include "field/math/box3.h"
+#include "field/number/functions.h"
+#include "field/tree/any_node.h"
+
+namespace marrow {
+
+/// One n-ary blend as a primitive.
+struct BlendLeaf {
+  std::shared_ptr<const BlendField> field;
+};
+
+/// Places its child.
+struct AffineWarp {
+  Affine parent_from_child, child_from_parent;
+
+  Box3 support(const Box3& child) const;
+  template <Number X>
+  Vec3<X> child_point(const Vec3<X>& p) const {
+    const auto& [x, y, z] = child_from_parent.columns;
+    return constant<X>(x) * p.x + constant<X>(y) * p.y + constant<X>(z) * p.z +
+           constant<X>(child_from_parent.translation);
+  }
+};
+
+namespace tree {
+
+template <class Variant, class... More>
+struct Extended;
+template <class... Kinds, class... More>
+struct Extended<std::variant<Kinds...>, More...> {
+  using type = std::variant<Kinds..., More...>;
+};
+
+}  // namespace tree
+
+using TreeNode = tree::Extended<AnyNode, BlendLeaf, AffineWarp, CrispUnion>::type;
+
+class FieldTree {
+ public:
+  struct Record {
+    std::uint32_t node = 0;  ///< index into nodes
+    std::uint32_t first_child = 0, child_count = 0;
+    MaterialId material;
+    Box3 support;  ///< in the node's own coordinates; outside, the node is 0
+  };
+
+  /// `nodes` may be shared between trees. Preconditions: children of a record stand before it; the last is the root.
+  FieldTree(std::shared_ptr<const std::vector<TreeNode>> nodes, std::vector<Record> records,
+            std::vector<std::uint32_t> children);
+
+  const TreeNode& node(const Record& r) const { return (*nodes_)[r.node]; }
+  std::span<const Record> records() const { return records_; }
+  std::uint32_t root() const { return static_cast<std::uint32_t>(records_.size() - 1); }
+  std::span<const std::uint32_t> children(const Record& r) const {
+    return std::span(children_).subspan(r.first_child, r.child_count);
+  }
+  const std::shared_ptr<const std::vector<TreeNode>>& nodes() const { return nodes_; }
+
+ private:
+  std::shared_ptr<const std::vector<TreeNode>> nodes_;
+  std::vector<Record> records_;
+  std::vector<std::uint32_t> children_;
+};
+
+/// The field at p; 1 on the surface, larger inside. X: double, Jet<double, 3>, HessianJet, Interval,
+/// Jet<Interval, 1>, Jet<Interval, 3>. Enclosures hold for every point of the box or ray piece that p spans.
+template <Number X>
+X value(const FieldTree&, const Vec3<X>& p);
+
+/// The same field inside a box, with less: nodes that are 0 there are gone, and so are operands that never count.
+/// A tree without records is 0 all over the box.
+FieldTree restricted(const FieldTree&, const Box3&);
+
+/// Outside this box the field is below 1. Infinite where no bound is found.
+Box3 surface_bounds(const FieldTree&);
+
+/// Primitives in the tree, those of blends among them; a shared node counts once.
+std::size_t leaf_count(const FieldTree&);
+
+/// Share of each contributing leaf in the value at p: w_i = f_i |dF/df_i|, normalised at every node, so that they sum
+/// to 1. Empty where the field is 0.
+struct LeafWeight {
+  const FieldTree::Record* leaf;
+  double weight;
+  Vec3d local;  ///< p in the leaf's coordinates
+};
+std::vector<LeafWeight> leaf_weights(const FieldTree&, const Vec3d& p);
+
+/// Material of the leaf with the largest weight, inside a blend of its strongest primitive; invalid: the object's own.
+MaterialId strongest_material(const FieldTree&, const Vec3d& p);
+
+}  // namespace marrow

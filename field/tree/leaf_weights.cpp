@@ -1,0 +1,85 @@
+// Who contributes how much to the value of a tree at a point.   [physics 2.3]
+#include <algorithm>
+
+#include "field/tree/machine.h"
+
+namespace marrow {
+namespace {
+
+// A node as it was visited, after its children.
+struct Visit {
+  std::uint32_t record;
+  Vec3d p;
+  double value, weight = 0;
+  std::vector<std::size_t> children;  // indices of visits
+};
+
+constexpr std::size_t nothing = ~std::size_t{0};
+
+// f_i |dF/df_i| of each operand.
+std::vector<double> shares(const TreeNode& node, std::span<const double> f) {
+  std::vector<Jet<double, 1>> operands(f.begin(), f.end());
+  std::vector<double> share(f.size(), 0);
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    if (!(f[i] > 0)) continue;
+    operands[i].slope[0] = 1;
+    const auto F = tree::value_of_node<Jet<double, 1>>(node, {}, operands);
+    operands[i].slope[0] = 0;
+    share[i] = f[i] * std::fabs(F.slope[0]);
+  }
+  double total = 0;
+  for (const double s : share) total += s;
+  if (!(total > 0) || !(total < Box3::inf)) {  // a plateau, or inside a skeleton: the largest operand alone
+    std::fill(share.begin(), share.end(), 0.0);
+    share[static_cast<std::size_t>(std::max_element(f.begin(), f.end()) - f.begin())] = total = 1;
+  }
+  for (double& s : share) s /= total;
+  return share;
+}
+
+}  // namespace
+
+std::vector<LeafWeight> leaf_weights(const FieldTree& tree, const Vec3d& p) {
+  std::vector<Visit> visits;
+  tree::Machine<double, std::size_t> machine;
+  std::vector<double> values;
+  machine.run(tree, p, nothing, [&](std::uint32_t record, const Vec3d& at, std::span<const std::size_t> children) {
+    values.clear();
+    for (const std::size_t c : children) values.push_back(c == nothing ? 0 : visits[c].value);
+    visits.push_back({record,
+                      at,
+                      tree::value_of_node<double>(tree.node(tree.records()[record]), at, values),
+                      0,
+                      {children.begin(), children.end()}});
+    return visits.size() - 1;
+  });
+  if (visits.empty() || !(visits.back().value > 0)) return {};
+  visits.back().weight = 1;
+  std::vector<LeafWeight> leaves;
+  for (std::size_t i = visits.size(); i-- > 0;) {
+    const Visit& v = visits[i];
+    if (!(v.weight > 0)) continue;
+    const FieldTree::Record& record = tree.records()[v.record];
+    if (v.children.empty()) {
+      leaves.push_back({&record, v.weight, v.p});
+      continue;
+    }
+    values.clear();
+    for (const std::size_t c : v.children) values.push_back(c == nothing ? 0 : visits[c].value);
+    const std::vector<double> share = v.children.size() == 1 ? std::vector{1.0} : shares(tree.node(record), values);
+    for (std::size_t c = 0; c < share.size(); ++c)
+      if (v.children[c] != nothing) visits[v.children[c]].weight += v.weight * share[c];
+  }
+  return leaves;
+}
+
+MaterialId strongest_material(const FieldTree& tree, const Vec3d& p) {
+  const std::vector<LeafWeight> leaves = leaf_weights(tree, p);
+  if (leaves.empty()) return {};
+  const LeafWeight& strongest = *std::max_element(
+      leaves.begin(), leaves.end(), [](const LeafWeight& a, const LeafWeight& b) { return a.weight < b.weight; });
+  const auto* blend = std::get_if<BlendLeaf>(&tree.node(*strongest.leaf));
+  return blend != nullptr ? strongest_material(*blend->field, strongest.local) : strongest.leaf->material;
+}
+
+}  // namespace marrow

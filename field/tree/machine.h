@@ -1,0 +1,98 @@
+// Walks a tree of nodes with stacks of its own, over any type of number.
+#pragma once
+
+#include <vector>
+
+#include "field/tree/blend_values.h"
+#include "field/tree/field_tree.h"
+
+namespace marrow::tree {
+
+template <class Node, class X>
+concept Primitive = requires(const Node& n, const Vec3<X>& p) {
+  n.value(p);
+};
+template <class Node, class X>
+concept Operator = requires(const Node& n, std::span<const X> f) {
+  n.value(f);
+};
+template <class Node, class X>
+concept Warp = requires(const Node& n, const Vec3<X>& p) {
+  n.child_point(p);
+};
+
+template <Number X>
+bool misses(const Box3& box, const Vec3<X>& p) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (upper(p[i]) < box.lower[i] || lower(p[i]) > box.upper[i]) return true;
+  return false;
+}
+
+template <Number X>
+X value_of_node(const TreeNode& node, const Vec3<X>& p, std::span<const X> children) {
+  return std::visit(
+      [&]<class Node>(const Node& n) -> X {
+        if constexpr (std::same_as<Node, BlendLeaf>) return blend_value(*n.field, p);
+        else if constexpr (Primitive<Node, X>) return n.value(p);
+        else if constexpr (Warp<Node, X>) return children[0];
+        else return n.value(children);
+      },
+      node);
+}
+
+template <Number X>
+Vec3<X> point_of_children(const TreeNode& node, const Vec3<X>& p) {
+  return std::visit(
+      [&]<class Node>(const Node& n) -> Vec3<X> {
+        if constexpr (Warp<Node, X>) return n.child_point(p);
+        else return p;
+      },
+      node);
+}
+
+/// Calls visit(record index, p, values of its children) -> value for every node that p's support test leaves, children
+/// first; `none` stands for the others. The stacks are kept between calls.
+template <Number X, class Value>
+class Machine {
+ public:
+  template <class Visit>
+  Value run(const FieldTree& tree, const Vec3<X>& p, const Value& none, const Visit& visit) {
+    frames_.clear();
+    values_.clear();
+    if (tree.records().empty()) return none;
+    enter(tree, tree.root(), p, none);
+    while (!frames_.empty()) {
+      Frame& top = frames_.back();
+      const FieldTree::Record& record = tree.records()[top.record];
+      if (top.next < record.child_count) {
+        const std::uint32_t child = tree.children(record)[top.next++];
+        const Vec3<X> at = top.inner;
+        enter(tree, child, at, none);
+        continue;
+      }
+      const std::span<const Value> children = std::span(values_).subspan(top.values);
+      const Value v = visit(top.record, top.outer, children);
+      values_.resize(top.values);
+      values_.push_back(v);
+      frames_.pop_back();
+    }
+    return values_.back();
+  }
+
+ private:
+  struct Frame {
+    std::uint32_t record, next;
+    std::size_t values;
+    Vec3<X> outer, inner;  // p in the node's coordinates and in its children's
+  };
+  void enter(const FieldTree& tree, std::uint32_t index, const Vec3<X>& p, const Value& none) {
+    const FieldTree::Record& record = tree.records()[index];
+    if (misses(record.support, p)) values_.push_back(none);
+    else frames_.push_back({index, 0, values_.size(), p, point_of_children(tree.node(record), p)});
+  }
+
+  std::vector<Frame> frames_;
+  std::vector<Value> values_;
+};
+
+}  // namespace marrow::tree

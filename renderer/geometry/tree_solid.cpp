@@ -1,0 +1,29 @@
+#include "renderer/geometry/tree_solid.h"
+
+namespace marrow {
+
+Result<std::unique_ptr<TreeSolid>> TreeSolid::make(FieldTree tree, MaterialId of_object) {
+  auto tracer = TreeTracer::make(std::move(tree));
+  if (!tracer) return tracer.why();
+  return std::unique_ptr<TreeSolid>(new TreeSolid(*std::move(tracer), of_object));
+}
+
+std::optional<double> TreeSolid::hit(std::size_t element, const Ray& ray, bool any, ElementLog& log) const {
+  CellLog cell;
+  const auto found = tracer_.first_hit(element, ray, any, cell);
+  log = {cell.enter, cell.undecided, cell.evaluations};
+  if (!found) return {};
+  return found->t;
+}
+
+void TreeSolid::describe(std::size_t element, const Ray&, SurfaceHit& hit) const {
+  const SurfacePoint surface = tracer_.surface_at(element, hit.position);
+  hit.normal = surface.normal;
+  hit.outside = surface.outside;
+  const MaterialId own = strongest_material(tracer_.tree(), hit.position);
+  hit.material = own.valid() ? own : material_;
+}
+
+std::size_t TreeSolid::primitive_count() const { return leaf_count(tracer_.tree()); }
+
+}  // namespace marrow
