@@ -2,6 +2,7 @@
 #include "renderer/scene/definitions.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 #include <variant>
 
@@ -30,6 +31,25 @@ FieldNode moved_by(FieldNode moved, std::size_t offset) {
                         [&](Transform& transform) { transform.of = FieldNodeId{transform.of.index() + offset}; }},
              moved.what);
   return moved;
+}
+
+std::span<const FieldNodeId> children_of(const FieldNode& node) {
+  return std::visit(Overloaded{[](const Primitive&) { return std::span<const FieldNodeId>(); },
+                               [](const Transform& t) { return std::span(&t.of, 1); },
+                               [](const auto& n) { return std::span<const FieldNodeId>(n.of); }},
+                    node.what);
+}
+
+// Nodes that a walk from the root meets, each as often as it is placed; at most one more than a scene may have.
+std::size_t visits(const FieldDescription& field) {
+  std::vector<std::size_t> below;
+  for (const FieldNode& node : field.nodes) {
+    std::size_t count = 1;
+    for (const FieldNodeId child : children_of(node))
+      count = std::min(count + below[child.index()], Reader::max_nodes + 1);
+    below.push_back(count);
+  }
+  return below[field.root.index()];
 }
 
 }  // namespace
@@ -99,9 +119,8 @@ std::optional<FieldNodeId> Definitions::place(const std::string& name, const Val
                                               Reader& reader) const {
   const auto found = fragments_.find(name);
   if (found == fragments_.end()) return reader.unknown("subtree", name, at.place, names());
-  if (!found->second) return std::nullopt;
+  if (!found->second || !reader.spend_nodes(visits(*found->second), at.place)) return std::nullopt;
   if (const auto there = reader.placed.find(name); there != reader.placed.end()) return there->second;
-  if (!reader.spend_nodes(found->second->nodes.size(), at.place)) return std::nullopt;
   const FieldDescription& part = *found->second;
   const std::size_t offset = field.nodes.size();
   for (const FieldNode& node : part.nodes) field.nodes.push_back(moved_by(node, offset));

@@ -14,7 +14,7 @@ namespace marrow {
 class Reader;
 
 /// Each subtree is read once and stands once in each field that uses it, so its mistakes are reported once, no chain
-/// of uses is too long for the stack, and uses of uses cost no memory.
+/// of uses is too long for the stack, uses of uses cost no memory, and a bomb of them meets a budget of visits.
 class Definitions {
  public:
   /// Of all subtrees with what they use; less than a scene may have, since they are kept beside it.
