@@ -222,19 +222,35 @@ PartialBounds partial_bounds(const BlendField& blend, const Correction& c, const
   return chord_partials(curve, c, f, x_H);
 }
 
+// For alpha >= 0 C is isotone in both.   [tracing 3.3]
+// Below 0, where the guard cannot act, it is isotone in G; along f its largest value is at an end, its least at an end
+// or on the crest of the curves M_d. Where the guard may act, C lies between 0 and 2 x_H.   [tracing 3.3;
+// field-maths 4.4]
 Interval corrected(const Correction& c, const Interval& f, const Interval& G) {
-  return {c.value(f.lo, G.lo) * (1 - 1e-12), c.value(f.hi, G.hi) * (1 + 1e-12)};
+  if (c.alpha() >= 0) return {c.value(f.lo, G.lo) * (1 - 1e-12), c.value(f.hi, G.hi) * (1 + 1e-12)};
+  const int n = c.degree();
+  const ReferenceCurve curve(n);
+  const double x_least = curve.inverse(G.lo), tangent = -tan(c.alpha());
+  const bool may_be_guarded = chord_slope(curve, Interval(f.lo), Interval(x_least)).lo < 2 * tangent * (1 + 1e-9);
+  if (may_be_guarded || !(f.lo > 0)) return {0, 2 * curve.inverse(G.hi) * (1 + 1e-12)};
+  const double crest_r = pow(2 * (n - 1) / (std::sqrt(n + 1.0) * G.lo), 1.0 / n);
+  const double crest = std::clamp(2 / integer_power(crest_r, n - 1), f.lo, f.hi);
+  const double least = std::min({c.value(f.lo, G.lo), c.value(f.hi, G.lo), c.value(crest, G.lo)});
+  const double most = std::max(c.value(f.lo, G.hi), c.value(f.hi, G.hi));
+  return {least * (1 - 1e-9), most * (1 + 1e-9)};
 }
 
 BlendBounds bounds_of_sum(const BlendField& blend, const SumBounds& sum, const Box3& box) {
   const Correction c = correction_of(blend);
   const Vec3<Interval> unknown{Interval::everything(), Interval::everything(), Interval::everything()};
-  if (blend.alpha < 0 || blend.alpha_per_skeleton) return {{0, inf}, unknown};
+  if (blend.alpha_per_skeleton) return {{0, inf}, unknown};
+  if (sum.unbounded() && blend.alpha < 0) return {{0, inf}, unknown};
   if (sum.unbounded()) return {{c.value(sum.low(), 0) * (1 - 1e-12), inf}, unknown};
   const Interval f = sum.f(box);
   const Vec3<Interval> S = sum.S(box), gradient = sum.gradient();
   const Interval G = sqrt(square(S.x) + square(S.y) + square(S.z));
-  BlendBounds b{.value = corrected(c, f, G), .gradient = {}};
+  BlendBounds b{.value = corrected(c, f, G), .gradient = unknown};
+  if (blend.alpha < 0) return b;
   const PartialBounds by = partial_bounds(blend, c, b.value, f, G);
   for (std::size_t j = 0; j < 3; ++j) {
     Interval G_slope;  // d G / d p_j = S . dS/dp_j / G, and |S_i / G| <= 1

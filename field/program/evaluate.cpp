@@ -1,5 +1,9 @@
 // Takes the largest part of a program.
 
+#include <memory>
+#include <utility>
+#include <vector>
+
 #include "field/program/field_program.h"
 
 namespace marrow {
@@ -49,6 +53,18 @@ BlendSample evaluate_part(const PlacedBlend& part, const Vec3d& p) {
   s.sum_gradient = part.local_from_world.transposed(s.sum_gradient);
   s.corrected_gradient = part.local_from_world.transposed(s.corrected_gradient);
   return s;
+}
+
+FieldTree tree_of(const PlacedBlend& part) {
+  auto nodes = std::make_shared<std::vector<TreeNode>>();
+  nodes->push_back(CrispUnion{});
+  nodes->push_back(BlendLeaf{std::make_shared<BlendField>(part.blend)});
+  std::vector<FieldTree::Record> records{
+      {.node = 1, .first_child = 0, .child_count = 0, .material = {}, .support = {}}};
+  if (part.is_in_world()) return FieldTree(std::move(nodes), std::move(records), {});
+  nodes->push_back(AffineWarp{part.world_from_local, part.local_from_world});
+  records.push_back({.node = 2, .first_child = 0, .child_count = 1, .material = {}, .support = {}});
+  return FieldTree(std::move(nodes), std::move(records), {0});
 }
 
 FieldSample evaluate(const FieldProgram& program, const Vec3d& p) {

@@ -9,6 +9,9 @@ namespace {
 
 using OnRay = Jet<Interval, 1>;
 
+// Bounds that do not shrink with the piece could be halved for ever. What is left then is reported as undecided.
+constexpr std::uint32_t most_evaluations = 2000;
+
 class Search {
  public:
   Search(const FieldTree& tree, const Ray& ray, bool any) : tree_(tree), ray_(ray), any_(any) {}
@@ -71,7 +74,12 @@ class Search {
         return {};
       }
     }
-    if (!is_short(piece)) return middle;
+    if (!is_short(piece) && found_.evaluations < most_evaluations) return middle;
+    if (!is_short(piece) && piece.starts_inside != piece.ends_inside) {
+      found_.undecided = std::min(found_.undecided, piece.begin);
+      found_.t = placed(piece);
+      return {};
+    }
     if (piece.starts_inside != piece.ends_inside) found_.t = piece.end;
     else found_.undecided = std::min(found_.undecided, piece.begin);
     return {};

@@ -12,8 +12,11 @@
 namespace marrow {
 namespace {
 
-// 2^8 cells along the longest side: finer cells cost more to build than they save.
-constexpr int max_level = 8;
+// 2^6 cells along the longest side: finer cells cost more to build than they save, most of all for blends, whose sums
+// do not get shorter in smaller cells.
+constexpr int max_level = 6, max_level_of_leaf = 5;
+// As many as a level may have to be divided further: bounds that do not shrink would keep all of space.
+constexpr std::size_t max_branches = 50'000;
 // Neighbours overlap so that no root falls between them by rounding; the restricted trees hold a little farther.
 constexpr double overlap = 1e-9, validity = 4e-9;
 
@@ -43,7 +46,8 @@ std::optional<Branch> examined(const FieldTree& parent, const Vec3d& center, dou
   const auto f = value(b.tree, with_slopes(span_of(b.box().padded(half * validity))));
   if (!f.value.contains(1)) return {};
   const bool one_sheet = excludes_zero(f.slope[0]) || excludes_zero(f.slope[1]) || excludes_zero(f.slope[2]);
-  b.is_cell = level >= max_level || (one_sheet && level >= 2);
+  const int deepest = b.tree.records().size() <= 1 ? max_level_of_leaf : max_level;
+  b.is_cell = level >= deepest || (one_sheet && level >= 2);
   return b;
 }
 
@@ -68,6 +72,7 @@ Result<TreeTracer> TreeTracer::make(FieldTree tree) {
 void TreeTracer::divide() {
   std::vector<Branch> level{root_of(tree_, bounds_)};
   for (int depth = 1; !level.empty(); ++depth) {
+    const bool is_last = level.size() * 8 > max_branches;
     std::vector<std::optional<Branch>> octants(level.size() * 8);
     tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) {
       const Branch& b = level[i];
@@ -78,7 +83,7 @@ void TreeTracer::divide() {
     level.clear();
     for (std::optional<Branch>& b : octants) {
       if (!b) continue;
-      if (b->is_cell) cells_.push_back({b->box(), std::move(b->tree)});
+      if (b->is_cell || is_last) cells_.push_back({b->box(), std::move(b->tree)});
       else level.push_back(*std::move(b));
     }
   }

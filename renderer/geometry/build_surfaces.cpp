@@ -49,8 +49,12 @@ class Builder {
       problems.insert(problems.end(), program.why().begin(), program.why().end());
       return;
     }
-    for (const PlacedBlend& part : program->parts())
-      add(FieldSolid::make(part, object.material, {.instruction_set = options_.isa}), object, id);
+    for (const PlacedBlend& part : program->parts()) {
+      // The tracer of blends knows the inverse kernel along lines; the general one takes the others.
+      if (untraceable_part(part.blend).empty())
+        add(FieldSolid::make(part, object.material, {.instruction_set = options_.isa}), object, id);
+      else add(TreeSolid::make(tree_of(part), object.material), object, id);
+    }
     for (const FieldTree& tree : program->trees()) add(TreeSolid::make(tree, object.material), object, id);
   }
 
