@@ -12,7 +12,6 @@
 #include "field/base/id.h"
 #include "field/math/affine.h"
 #include "field/math/vec3.h"
-#include "field/tree/any_node.h"
 
 namespace marrow {
 
@@ -125,9 +124,12 @@ struct Transform {
   FieldNodeId of;
 };
 
-/// Any of the general nodes of field/tree/any_node.h. Children need not be general nodes.
+/// A node of field/tree/any_node.h, where it is defined: what reads or draws descriptions does not depend on its kinds.
+struct BoxedNode;
+
+/// Any of the general nodes. Children need not be general nodes.
 struct GeneralNode {
-  AnyNode node;
+  std::shared_ptr<const BoxedNode> node;  ///< never null in a valid description
   std::vector<FieldNodeId> of;
   MaterialId material;  ///< of a node without children; invalid: the object's
 };

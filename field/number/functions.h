@@ -69,6 +69,19 @@ Jet<Interval, N> hull(const Jet<Interval, N>& a, const Jet<Interval, N>& b) {
   return r;
 }
 
+/// Anything from x on, with any slope.
+template <Number X>
+X at_least(double x) {
+  const Interval above{x, std::numeric_limits<double>::infinity()};
+  if constexpr (JetNumber<X>) {
+    X r(above);
+    r.slope.fill(Interval::everything());
+    return r;
+  } else {
+    return above;
+  }
+}
+
 namespace number_detail {
 
 constexpr double within(double x, double, double) { return x; }
@@ -87,7 +100,8 @@ X piecewise(const X& x, double knot, Left left, Right right) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   if (lower(x) >= knot) return right(x);
   if (upper(x) < knot) return left(x);
-  if constexpr (is_enclosure<X>) return hull(left(number_detail::within(x, -inf, knot)), right(number_detail::within(x, knot, inf)));
+  if constexpr (is_enclosure<X>)
+    return hull(left(number_detail::within(x, -inf, knot)), right(number_detail::within(x, knot, inf)));
   else return right(x);
 }
 

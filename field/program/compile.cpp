@@ -15,6 +15,7 @@
 #include "field/program/field_program.h"
 #include "field/program/validate.h"
 #include "field/skeleton/subdivision_curve.h"
+#include "field/tree/tree_node.h"
 
 namespace marrow {
 namespace {
@@ -228,7 +229,7 @@ class Compiler {
     std::vector<FieldTree::Record> records;
     std::vector<std::uint32_t> children;
     std::vector<double> paths;  // how often a walk from the root of a node visits nodes
-    std::map<std::size_t, std::uint32_t> record_of;
+    std::vector<std::uint32_t> record_of(here.node.index() + 1);
     nodes->push_back(CrispUnion{});
     const auto add = [&](TreeNode node, std::span<const FieldNodeId> of, MaterialId material) {
       FieldTree::Record record{.node = static_cast<std::uint32_t>(nodes->size()),
@@ -238,7 +239,7 @@ class Compiler {
                                .support = {}};
       paths.push_back(1);
       for (const FieldNodeId child : of) {
-        children.push_back(record_of.at(child.index()));
+        children.push_back(record_of[child.index()]);
         paths.back() += paths[children.back()];
       }
       nodes->push_back(std::move(node));
@@ -254,7 +255,7 @@ class Compiler {
                             [&](const Blend& b) { add(leaf_of(b, id), {}, {}); },
                             [&](const Primitive& p) { add(leaf_of(blend_of(id), id, p.model), {}, {}); },
                             [&](const GeneralNode& n) {
-                              add(std::visit([](const auto& kind) { return TreeNode(kind); }, n.node), n.of,
+                              add(std::visit([](const auto& kind) { return TreeNode(kind); }, n.node->node), n.of,
                                   n.material);
                             }},
                  description_[id].what);
@@ -305,18 +306,19 @@ class Compiler {
   }
 
   void add_child(const Placement& child, SkeletonModel model, BlendField& field, std::vector<Placement>& open) {
-    std::visit(Overloaded{[&](const Primitive& p) { add_primitive(p, child, model, field); },
-                          [&](const Transform& t) {
-                            if (!t.parent_from_child.similarity())
-                              return report(child.node, "a transform inside a blend that changes shape",
-                                            "inside a blend move, rotate and scale uniformly; "
-                                            "or put the transform above the blend");
-                            open.push_back({t.of, child.from_node * t.parent_from_child});
-                          },
-                          [&](const Union&) { report_nesting(child.node, "union"); },
-                          [&](const Blend&) { report_nesting(child.node, "blend"); },
-                          [&](const GeneralNode& n) { report_nesting(child.node, std::string(info_of(n.node).name)); }},
-               description_[child.node].what);
+    std::visit(
+        Overloaded{[&](const Primitive& p) { add_primitive(p, child, model, field); },
+                   [&](const Transform& t) {
+                     if (!t.parent_from_child.similarity())
+                       return report(child.node, "a transform inside a blend that changes shape",
+                                     "inside a blend move, rotate and scale uniformly; "
+                                     "or put the transform above the blend");
+                     open.push_back({t.of, child.from_node * t.parent_from_child});
+                   },
+                   [&](const Union&) { report_nesting(child.node, "union"); },
+                   [&](const Blend&) { report_nesting(child.node, "blend"); },
+                   [&](const GeneralNode& n) { report_nesting(child.node, std::string(info_of(n.node->node).name)); }},
+        description_[child.node].what);
   }
 
   void report_nesting(FieldNodeId node, const std::string& kind) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "field/program/field_program.h"
+#include "field/tree/tree_node.h"
 
 namespace marrow {
 namespace {

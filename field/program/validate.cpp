@@ -175,7 +175,8 @@ void check(const Union& united, Findings& findings) {
 }
 
 void check(const GeneralNode& node, Findings& findings) {
-  for (auto& [message, hint] : problems_of(node.node, node.of.size())) findings.add(message, hint);
+  if (!node.node) return findings.add("a general node without parameters", "every node has its parameters");
+  for (auto& [message, hint] : problems_of(node.node->node, node.of.size())) findings.add(message, hint);
 }
 
 void check(const Transform& transform, Findings& findings) {

@@ -1,6 +1,8 @@
 // The table of all kinds of nodes. A new kind is its own file and one row here.
 #pragma once
 
+#include <memory>
+#include <utility>
 #include <variant>
 
 #include "field/tree/nodes/crisp.h"
@@ -16,6 +18,13 @@ using AnyNode = std::variant<  //
     Intersection, Difference,  // set operations
     Ricci,                     // blends
     Twist>;                    // warps
+
+struct BoxedNode {
+  AnyNode node;
+};
+inline std::shared_ptr<const BoxedNode> boxed(AnyNode node) {
+  return std::make_shared<const BoxedNode>(BoxedNode{std::move(node)});
+}
 
 inline const NodeInfo& info_of(const AnyNode& node) {
   return std::visit([]<class Kind>(const Kind&) -> const NodeInfo& { return Kind::info; }, node);

@@ -63,6 +63,8 @@ FieldTree::FieldTree(std::shared_ptr<const std::vector<TreeNode>> nodes, std::ve
   }
 }
 
+const TreeNode& FieldTree::node(const Record& r) const { return (*nodes_)[r.node]; }
+
 std::size_t leaf_count(const FieldTree& tree) {
   std::size_t count = 0;
   for (const FieldTree::Record& r : tree.records()) {

@@ -10,44 +10,13 @@
 #include <vector>
 
 #include "field/base/id.h"
-#include "field/blend/blend_field.h"
-#include "field/math/affine.h"
 #include "field/math/box3.h"
 #include "field/number/functions.h"
-#include "field/tree/any_node.h"
 
 namespace marrow {
 
-/// One n-ary blend as a primitive.
-struct BlendLeaf {
-  std::shared_ptr<const BlendField> field;
-};
-
-/// Places its child.
-struct AffineWarp {
-  Affine parent_from_child, child_from_parent;
-
-  Box3 support(const Box3& child) const;
-  template <Number X>
-  Vec3<X> child_point(const Vec3<X>& p) const {
-    const auto& [x, y, z] = child_from_parent.columns;
-    return constant<X>(x) * p.x + constant<X>(y) * p.y + constant<X>(z) * p.z +
-           constant<X>(child_from_parent.translation);
-  }
-};
-
-namespace tree {
-
-template <class Variant, class... More>
-struct Extended;
-template <class... Kinds, class... More>
-struct Extended<std::variant<Kinds...>, More...> {
-  using type = std::variant<Kinds..., More...>;
-};
-
-}  // namespace tree
-
-using TreeNode = tree::Extended<AnyNode, BlendLeaf, AffineWarp, CrispUnion>::type;
+/// What a record is; defined in tree_node.h.
+struct TreeNode;
 
 class FieldTree {
  public:
@@ -62,7 +31,7 @@ class FieldTree {
   FieldTree(std::shared_ptr<const std::vector<TreeNode>> nodes, std::vector<Record> records,
             std::vector<std::uint32_t> children);
 
-  const TreeNode& node(const Record& r) const { return (*nodes_)[r.node]; }
+  const TreeNode& node(const Record& r) const;
   std::span<const Record> records() const { return records_; }
   std::uint32_t root() const { return static_cast<std::uint32_t>(records_.size() - 1); }
   std::span<const std::uint32_t> children(const Record& r) const {

@@ -5,6 +5,7 @@
 
 #include "field/tree/blend_values.h"
 #include "field/tree/field_tree.h"
+#include "field/tree/tree_node.h"
 
 namespace marrow::tree {
 

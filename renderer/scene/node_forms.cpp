@@ -4,6 +4,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "field/tree/any_node.h"
 #include "renderer/scene/field_forms.h"
 
 namespace marrow {
@@ -175,7 +176,7 @@ Form<FieldNodeId> node_form() {
   node.read = [written](const Value& v, Reader& reader) -> std::optional<FieldNodeId> {
     auto what = written.read(v, reader);
     if (!what || !reader.spend_nodes(1, v.place)) return std::nullopt;
-    GeneralNode made{.node = static_cast<Kind&&>(*what), .of = std::move(what->of), .material = what->material};
+    GeneralNode made{.node = boxed(static_cast<Kind&&>(*what)), .of = std::move(what->of), .material = what->material};
     return reader.field->add({.what = std::move(made), .where = reader.sources.location(v.place)});
   };
   return node;

@@ -26,10 +26,24 @@ struct Ricci {
   X value(std::span<const X> f) const {
     double largest = 0;
     for (const X& x : f) largest = max(largest, upper(x));
-    if (!(largest > 0) || !(largest < std::numeric_limits<double>::infinity())) return X(largest);
+    if (!(largest > 0)) return X(0.0);
+    if (!(largest < std::numeric_limits<double>::infinity())) return largest_of(f);
     X sum(0.0);
     for (const X& x : f) sum = sum + pow(x * X(1 / largest), power);
     return X(largest) * pow(sum, 1 / power);
+  }
+
+ private:
+  // Where a field has no upper bound the blend has none, and it is at least the largest field.
+  template <Number X>
+  static X largest_of(std::span<const X> f) {
+    if constexpr (is_enclosure<X>) {
+      double least = 0;
+      for (const X& x : f) least = max(least, lower(x));
+      return at_least<X>(least);
+    } else {
+      return X(std::numeric_limits<double>::infinity());
+    }
   }
 };
 

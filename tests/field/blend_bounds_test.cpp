@@ -1,0 +1,98 @@
+// Bounds over boxes against the field at points in them.
+#include "field/blend/blend_bounds.h"
+
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "tests/field/random.h"
+
+namespace marrow {
+namespace {
+
+using test::Random;
+
+BlendField random_blend(Random& random) {
+  BlendField blend;
+  blend.degree = random.whole(3, 6);
+  const int family = random.whole(0, 5);
+  if (family == 4) blend.kernel = KernelFamily::Cauchy;
+  if (family == 5) blend.kernel = KernelFamily::Compact, blend.kernel_shape = 2;
+  const bool inverse = blend.kernel == KernelFamily::Inverse;
+  blend.alpha = !inverse || random.between(0, 1) < 0.2 ? std::numbers::pi / 2 : random.between(-0.9, 1.5);
+  blend.cavity = random.between(0, 1) < 0.8;
+  if (blend.alpha >= 0 && random.between(0, 1) < 0.3) blend.projection = Projection::Exact;
+  for (int i = random.whole(1, 3); i > 0; --i) {
+    const int kind = inverse ? random.whole(0, 4) : random.whole(0, 1);
+    if (kind == 0) blend.points.add(random.point(), {});
+    if (kind == 1) blend.segments.add(random.segment(), {});
+    if (kind == 2) blend.distance_segments.add(random.segment(), {});
+    if (kind == 3) blend.arcs.add(random.arc(), {});
+    if (kind == 4) blend.triangles.add(random.triangle(), {});
+  }
+  return blend;
+}
+
+TEST(BlendBounds, HoldAtPointsOfTheBox) {
+  Random random(51);
+  int bounded = 0, sloped = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const BlendField blend = random_blend(random);
+    const Vec3d center = random.vector(2.5);
+    const double half = pow(10, random.between(-4, -0.2));
+    const Box3 box = Box3{center, center}.padded(half);
+    const BlendBounds bounds = blend_bounds(blend, box);
+    bounded += bounds.value.hi < 1e300;
+    for (int k = 0; k < 6; ++k) {
+      const Vec3d p = center + random.vector(half);
+      const BlendSample s = evaluate(blend, p);
+      ASSERT_TRUE(bounds.value.contains(s.corrected))
+          << "case " << i << " of half size " << half << ": " << s.corrected << " not in [" << bounds.value.lo << ", "
+          << bounds.value.hi << "], alpha " << blend.alpha << " degree " << blend.degree;
+      if (!blend.cavity) continue;  // its gradient is not bounded
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (s.sum > 1e50) continue;
+        const Interval& g = bounds.gradient[axis];
+        const double slack = 1e-9 * (1 + length(s.corrected_gradient));
+        ASSERT_TRUE(g.lo - slack <= s.corrected_gradient[axis] && s.corrected_gradient[axis] <= g.hi + slack)
+            << "case " << i << " axis " << axis << ": " << s.corrected_gradient[axis] << " not in [" << g.lo << ", "
+            << g.hi << "], alpha " << blend.alpha << " degree " << blend.degree << " exact "
+            << (blend.projection == Projection::Exact);
+        sloped += g.hi - g.lo < 1e300;
+      }
+    }
+  }
+  EXPECT_GT(bounded, 700);
+  EXPECT_GT(sloped, 5000);
+}
+
+TEST(BlendBounds, NarrowWithTheBox) {
+  Random random(52);
+  for (int i = 0; i < 40; ++i) {
+    BlendField blend;
+    blend.segments.add(random.segment(), {});
+    blend.alpha = 0.7;
+    const Vec3d p = normalize(random.vector(1)) * 3.0;
+    const double wide = blend_bounds(blend, Box3{p, p}.padded(1e-2)).value.width();
+    const double narrow = blend_bounds(blend, Box3{p, p}.padded(1e-3)).value.width();
+    EXPECT_LT(narrow, 0.12 * wide);
+  }
+}
+
+TEST(BlendExtent, IsBelowTheLevelOutside) {
+  Random random(53);
+  for (int i = 0; i < 300; ++i) {
+    const BlendField blend = random_blend(random);
+    const double level = pow(10, random.between(-2, 0.3));
+    const Box3 box = blend_extent(blend, level);
+    for (int k = 0; k < 5; ++k) {
+      Vec3d p = box.center() + random.vector(1.5 * max_component(box.size()));
+      if (box.contains(p)) p[static_cast<std::size_t>(random.whole(0, 2))] = box.upper.x + box.size().x;
+      if (box.contains(p)) continue;
+      EXPECT_LT(corrected_value(blend, p), level);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace marrow

@@ -1,0 +1,158 @@
+// The tracer of general trees against dense sampling of the field along rays, over random trees of all kinds of nodes.
+#include "field/trace/tree_tracer.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "field/program/field_program.h"
+#include "field/trace/crossing.h"
+#include "field/tree/any_node.h"
+#include "tests/field/random.h"
+
+namespace marrow {
+namespace {
+
+using test::Random;
+
+FieldNodeId ball(FieldDescription& field, Random& random) {
+  Sphere s;
+  s.center = random.vector(1.2);
+  s.radius = random.between(0.2, 0.9);
+  s.potential = WyvillProfile{random.between(0.2, 1.5)};
+  return field.add({.what = GeneralNode{.node = boxed(s), .of = {}, .material = {}}, .where = {}});
+}
+
+FieldNodeId tubes(FieldDescription& field, Random& random) {
+  Blend blend;
+  for (int i = random.whole(1, 3); i > 0; --i)
+    blend.of.push_back(field.add(
+        {.what = Primitive{.skeleton = random.segment(), .model = {}, .alpha = {}, .material = {}}, .where = {}}));
+  if (random.between(0, 1) < 0.3) blend.alpha = random.between(0, 1.5);
+  if (random.between(0, 1) < 0.3) blend.projection = Projection::Exact;
+  return field.add({.what = std::move(blend), .where = {}});
+}
+
+FieldNodeId leaf(FieldDescription& field, Random& random) {
+  return random.between(0, 1) < 0.7 ? ball(field, random) : tubes(field, random);
+}
+
+FieldNodeId combined(FieldDescription& field, Random& random, std::vector<FieldNodeId> of) {
+  const auto general = [&](AnyNode node) {
+    return field.add(
+        {.what = GeneralNode{.node = boxed(std::move(node)), .of = std::move(of), .material = {}}, .where = {}});
+  };
+  switch (random.whole(0, 4)) {
+    case 0:
+      return general(Intersection{});
+    case 1:
+      return general(Difference{});
+    case 2:
+      return general(Ricci{random.between(1, 9)});
+    case 3: {
+      const FieldNodeId inner = field.add({.what = Union{of}, .where = {}});
+      Twist twist;
+      twist.angle_per_length = random.between(-1.5, 1.5);
+      return field.add({.what = GeneralNode{.node = boxed(twist), .of = {inner}, .material = {}}, .where = {}});
+    }
+    default:
+      return field.add({.what = Union{std::move(of)}, .where = {}});
+  }
+}
+
+FieldTree random_tree(Random& random) {
+  FieldDescription field;
+  std::vector<FieldNodeId> layer;
+  for (int i = random.whole(2, 5); i > 0; --i) layer.push_back(leaf(field, random));
+  while (layer.size() > 1) {
+    const FieldNodeId a = layer.back();
+    layer.pop_back();
+    const FieldNodeId b = layer.back();
+    layer.pop_back();
+    layer.insert(layer.begin(), combined(field, random, {b, a}));
+  }
+  const Affine map = Affine::rotate(normalize(random.vector(1)), random.between(0, 3)) *
+                     Affine::scale({random.between(0.6, 1.4), random.between(0.6, 1.4), 1});
+  // A Ricci blend of one keeps the root a general node.
+  const FieldNodeId placed = field.add({.what = Transform{map, layer[0]}, .where = {}});
+  field.root = field.add({.what = GeneralNode{.node = boxed(Ricci{1}), .of = {placed}, .material = {}}, .where = {}});
+  const auto program = compile(field);
+  EXPECT_TRUE(program) << program.why()[0].message;
+  EXPECT_EQ(program->trees().size(), 1u);
+  return program->trees()[0];
+}
+
+// All cells by themselves, without a hierarchy.
+CrossingSearch traced(const TreeTracer& tracer, const Ray& ray) {
+  CrossingSearch first;
+  for (std::size_t cell = 0; cell < tracer.cell_count(); ++cell) {
+    CellLog log;
+    const auto hit = tracer.first_hit(cell, ray, false, log);
+    first.undecided = std::min(first.undecided, log.undecided);
+    if (hit && (!first.t || hit->t < *first.t)) first.t = hit->t;
+  }
+  return first;
+}
+
+// The first change of side among samples, as an interval.
+std::optional<Interval> sampled(const FieldTree& tree, const Ray& ray, double end) {
+  constexpr int samples = 3000;
+  bool inside = value(tree, ray.origin) >= 1;
+  for (int i = 1; i <= samples; ++i) {
+    const double t = end * i / samples;
+    if ((value(tree, ray.at(t)) >= 1) != inside) return Interval{end * (i - 1) / samples, t};
+  }
+  return {};
+}
+
+TEST(TreeTracer, NeverComesAfterWhatSamplingFindsAndAlwaysLiesOnTheSurface) {
+  Random random(41);
+  int hits = 0, undecided = 0;
+  for (int scene = 0; scene < 40; ++scene) {
+    const FieldTree tree = random_tree(random);
+    const auto tracer = TreeTracer::make(tree);
+    ASSERT_TRUE(tracer) << tracer.why()[0].message;
+    for (int r = 0; r < 12; ++r) {
+      const Vec3d from = normalize(random.vector(1)) * 8.0;
+      const Ray ray{.origin = from, .direction = normalize(random.vector(1.2) - from)};
+      const CrossingSearch found = traced(*tracer, ray);
+      const auto expected = sampled(tree, ray, 16);
+      undecided += found.undecided < 1e300;
+      if (expected) {
+        ASSERT_TRUE(found.t) << "scene " << scene << " ray " << r << " missed at " << expected->lo;
+        EXPECT_LE(*found.t, expected->hi + 1e-9) << "scene " << scene << " ray " << r;
+      }
+      if (!found.t) continue;
+      ++hits;
+      const double before = value(tree, ray.at(*found.t - 1e-9)), after = value(tree, ray.at(*found.t + 1e-9));
+      EXPECT_NE(before >= 1, after >= 1) << "scene " << scene << " ray " << r << ": " << before << " " << after;
+    }
+  }
+  EXPECT_GT(hits, 150);
+  EXPECT_LE(undecided, 5);
+}
+
+TEST(TreeTracer, SpawnedPointsLieOutside) {
+  Random random(43);
+  int hits = 0;
+  for (int scene = 0; scene < 20; ++scene) {
+    const FieldTree tree = random_tree(random);
+    const auto tracer = TreeTracer::make(tree);
+    ASSERT_TRUE(tracer);
+    for (std::size_t cell = 0; cell < tracer->cell_count(); cell += 7) {
+      const Vec3d from = normalize(random.vector(1)) * 8.0;
+      const Ray ray{.origin = from, .direction = normalize(tracer->cell_box(cell).center() - from)};
+      CellLog log;
+      const auto hit = tracer->first_hit(cell, ray, false, log);
+      if (!hit) continue;
+      ++hits;
+      const SurfacePoint at = tracer->surface_at(cell, ray.at(hit->t));
+      EXPECT_LT(value(tree, at.outside), 1);
+      EXPECT_LT(length(at.outside - ray.at(hit->t)), 0.01);
+    }
+  }
+  EXPECT_GT(hits, 100);
+}
+
+}  // namespace
+}  // namespace marrow
