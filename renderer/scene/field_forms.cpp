@@ -7,6 +7,7 @@
 
 #include "field/kernel/inverse_family.h"
 #include "renderer/scene/primitive_forms.h"
+#include "renderer/scene/skeleton_forms.h"
 
 namespace marrow {
 namespace {
@@ -232,6 +233,7 @@ Form<FieldDescription> field_tree() {
 
 std::vector<const TableInfo*> field_tables() {
   std::vector<const TableInfo*> tables = primitive_tables();
+  for (const TableInfo* table : skeleton_tables()) tables.push_back(table);
   for (const TableInfo* table : {&kernel_table().info, &blend_table().info, &union_table().info,
                                  &transform_table().info, &rotation_table().info})
     tables.push_back(table);

@@ -1,42 +1,20 @@
-// Tables of point, segment, polyline, curve and skeleton; what they share is written once.
+// Tables of point, segment, polyline, curve, triangle, circle and arc; what they share is written once.
 #include "renderer/scene/primitive_forms.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <numbers>
 
-#include "renderer/scene/files/swc.h"
-#include "renderer/scene/scalar.h"
+#include "renderer/scene/drawn.h"
 
 namespace marrow {
 namespace {
 
-// A skeleton with what every primitive may say. The skeleton is a base so that its members can be bound as they are.
 template <class Skeleton>
-struct Drawn : Skeleton {
-  std::optional<SkeletonModel> model;
-  std::optional<double> alpha;
-  MaterialId material;
-};
-
-template <class Skeleton>
-std::vector<Key<Drawn<Skeleton>>> with_common_keys(std::vector<Key<Drawn<Skeleton>>> keys) {
-  using Owner = Drawn<Skeleton>;
-  keys.push_back(key<Owner>("model", &Owner::model, skeleton_model(), "its field; the blend's when left out"));
-  keys.push_back(key<Owner>("alpha", &Owner::alpha, primitive_alpha(),
-                            "in radians, for `alpha: per_skeleton`; contact when left out"));
-  keys.push_back(key<Owner>("material", &Owner::material, material_name(), "the object's when left out"));
-  return keys;
-}
-
-template <class Skeleton>
-Primitive primitive(Drawn<Skeleton> drawn) {
-  Primitive made{.skeleton = {}, .model = drawn.model, .alpha = drawn.alpha, .material = drawn.material};
-  made.skeleton = static_cast<Skeleton&&>(std::move(drawn));
-  return made;
+Primitive primitive(const Drawn<Skeleton>& drawn) {
+  return primitive_with(static_cast<const Skeleton&>(drawn), drawn);
 }
 
 const Table<Drawn<PointSkeleton>>& point_table() {
@@ -92,7 +70,7 @@ bool radii_fit(const Line& line, const Value& v, Reader& reader) {
 template <class Line>
 Primitive with_all_radii(Drawn<Line> line) {
   if (line.radii.size() == 1) line.radii.resize(line.points.size(), line.radii.front());
-  return primitive<Line>(std::move(line));
+  return primitive<Line>(line);
 }
 
 const Table<Drawn<PolylineSkeleton>>& polyline_table() {
@@ -232,42 +210,7 @@ Primitive arc_of(const Drawn<Round>& drawn) {
   arc.axis2 = normalize(arc.axis2 - first * dot(arc.axis2, first)).vec();
   arc.begin = drawn.angles_deg[0] * degree_in_radians;
   arc.end = drawn.angles_deg[1] * degree_in_radians;
-  return {.skeleton = arc, .model = drawn.model, .alpha = drawn.alpha, .material = drawn.material};
-}
-
-struct SkeletonFile {
-  std::filesystem::path file;
-  double scale = 1;
-  std::optional<double> min_radius;
-};
-const Table<Drawn<SkeletonFile>>& skeleton_table() {
-  using File = Drawn<SkeletonFile>;
-  static const Table<File> table(
-      "skeleton", "All branches of an SWC file.",
-      with_common_keys<SkeletonFile>(
-          {key<File>("file", &SkeletonFile::file, file_name(), "an .swc file, relative to this one").required(),
-           key<File>("scale", &SkeletonFile::scale, number(any_radius()), "multiplies positions and radii"),
-           key<File>("min_radius", &SkeletonFile::min_radius, number(any_radius()),
-                     "thinner places are made this thick; in scene units, after `scale`")}));
-  return table;
-}
-
-SharedSkeletonGraph load(const SkeletonFile& wanted, const Place& at, Reader& reader) {
-  const std::string id = wanted.file.string() + '\n' + number_text(wanted.scale) + '\n' +
-                         (wanted.min_radius ? number_text(*wanted.min_radius) : "");
-  const auto known = reader.skeletons.find(id);
-  if (known != reader.skeletons.end()) return known->second;
-  SharedSkeletonGraph& graph = reader.skeletons[id];  // stays null after a mistake, so that it is reported once
-  auto file = reader.open(wanted.file, at);
-  if (!file) return graph;
-  auto swc = read_swc(file->bytes, {.scale = wanted.scale, .min_radius = wanted.min_radius}, wanted.file.string());
-  if (swc) graph = std::make_shared<const SkeletonGraph>(std::move(swc->graph));
-  reader.report_file(wanted.file, std::move(file->bytes), swc ? swc->warnings : swc.why());
-  return graph;
-}
-
-Primitive with_graph(const Drawn<SkeletonFile>& drawn, SharedSkeletonGraph graph) {
-  return {.skeleton = std::move(graph), .model = drawn.model, .alpha = drawn.alpha, .material = drawn.material};
+  return primitive_with(arc, drawn);
 }
 
 }  // namespace
@@ -289,22 +232,9 @@ Form<Primitive> triangle_form() { return mapped<Primitive>(map_of(triangle_table
 Form<Primitive> circle_form() { return mapped<Primitive>(map_of(circle_table()), arc_of); }
 Form<Primitive> arc_form() { return mapped<Primitive>(map_of(arc_table()), arc_of); }
 
-Form<Primitive> skeleton_form() {
-  const Form<Drawn<SkeletonFile>> map = map_of(skeleton_table());
-  Form<Primitive> form = mapped<Primitive>(map, [](const Drawn<SkeletonFile>&) { return Primitive{}; });
-  form.read = [map](const Value& v, Reader& reader) -> std::optional<Primitive> {
-    const auto wanted = map.read(v, reader);
-    if (!wanted) return std::nullopt;
-    const Member* file = v.find("file");
-    auto graph = load(*wanted, file->value.place, reader);
-    return graph ? std::optional(with_graph(*wanted, std::move(graph))) : std::nullopt;
-  };
-  return form;
-}
-
 std::vector<const TableInfo*> primitive_tables() {
   return {&point_table().info,    &segment_table().info, &polyline_table().info, &curve_table().info,
-          &triangle_table().info, &circle_table().info,  &arc_table().info,      &skeleton_table().info};
+          &triangle_table().info, &circle_table().info,  &arc_table().info};
 }
 
 }  // namespace marrow

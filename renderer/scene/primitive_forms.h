@@ -21,8 +21,6 @@ Form<Primitive> circle_form();
 Form<Primitive> arc_form();
 /// A subdivision curve.
 Form<Primitive> curve_form();
-/// Reads the file that it names.
-Form<Primitive> skeleton_form();
 
 std::vector<const TableInfo*> primitive_tables();
 
