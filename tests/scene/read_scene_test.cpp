@@ -176,7 +176,7 @@ TEST_F(ReadScene, TheHashIsOfAllThatWasRead) {
 }
 
 TEST_F(ReadScene, SamplesOfTheRepositoryLoad) {
-  for (const char* name : {"rat_ca1_pyramidal_NMO_49821.swc", "tree.swc", "vessel.swc"}) {
+  for (const char* name : {"rat_ca1_pyramidal_NMO_49821.swc", "tree.swc", "vessel.swc", "1crn.pdb", "tuft.hair"}) {
     const std::string file = std::string(MARROW_SOURCE_DIR) + "/scenes/data/" + name;
     EXPECT_TRUE(read("marrow: 1\nobjects:\n  - field: {skeleton: {file: " + file + "}}\n")) << name;
   }
