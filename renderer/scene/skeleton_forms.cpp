@@ -5,8 +5,11 @@
 #include <memory>
 #include <utility>
 
+#include "field/skeleton/curve_graph.h"
+#include "renderer/scene/curve_forms.h"
 #include "renderer/scene/drawn.h"
 #include "renderer/scene/files/elements.h"
+#include "renderer/scene/files/node_list.h"
 #include "renderer/scene/files/skeleton_file.h"
 #include "renderer/scene/scalar.h"
 
@@ -17,7 +20,12 @@ struct FileSkeleton {
   std::filesystem::path file;
   std::optional<SkeletonFormat> format;
   SkeletonOptions options;
+  std::optional<double> tolerance;  // of simplify
+  std::optional<Subdivision> subdivision;
+  std::optional<int> levels;
 
+  // Smoothing is asked for by either of its keys.
+  int all_levels() const { return levels.value_or(subdivision ? 2 : 0); }
   std::optional<SkeletonFormat> any_format() const { return format ? format : skeleton_format_of(file.string()); }
 };
 using File = Drawn<FileSkeleton>;
@@ -110,7 +118,16 @@ const Table<File>& skeleton_table() {
            option("elements", &Options::elements, list_of(element_symbol(), 1),
                   "molecules only: the atoms to take, with their halves of bonds; all when left out"),
            option("bonds", &Options::bonds, number(any_radius()),
-                  "molecules only: radius of the bonds, in scene units; none when left out")}),
+                  "molecules only: radius of the bonds, in scene units; none when left out"),
+           key<File>("simplify", &FileSkeleton::tolerance, number(any_radius()),
+                     "leaves out nodes of branches that are no farther, in place and in radius, from their neighbours' "
+                     "segment; in scene units, before smoothing"),
+           key<File>("subdivision", &FileSkeleton::subdivision, subdivision_name(),
+                     "smooths branches as a `curve`; junctions and ends stay"),
+           key<File>(
+               "levels", &FileSkeleton::levels, integer(0, CurveSkeleton::max_levels),
+               "level of detail of `subdivision`, which is `chaikin` when left out: each doubles the segments; 2 with "
+               "`subdivision`, else 0, when left out")}),
       keys_fit);
   return table;
 }
@@ -126,12 +143,30 @@ std::string id_of(const FileSkeleton& wanted) {
   const SkeletonOptions& o = wanted.options;
   std::string id =
       wanted.file.string() + '\n' + (wanted.format ? std::to_string(static_cast<int>(*wanted.format)) : "");
-  for (const double x : {o.scale, o.radius_scale, o.radius.value_or(0), o.min_radius.value_or(0), o.bonds.value_or(0)})
+  for (const double x : {o.scale, o.radius_scale, o.radius.value_or(0), o.min_radius.value_or(0), o.bonds.value_or(0),
+                         wanted.tolerance.value_or(0), static_cast<double>(wanted.all_levels()),
+                         wanted.subdivision == Subdivision::Cubic ? 1.0 : 0.0})
     id += '\n' + number_text(x);
   const CsvColumns& c = o.columns;
   for (const auto& column : {c.x, c.y, c.z, c.radius, c.strand, c.id, c.parent}) id += '\n' + id_of(column);
   for (const std::string& element : o.elements) id += '\n' + element;
   return id;
+}
+
+// Null after reporting a skeleton that grows too large.
+SharedSkeletonGraph refined(SkeletonGraph graph, const FileSkeleton& wanted, const Place& at, Reader& reader) {
+  if (wanted.tolerance) graph = simplify(graph, *wanted.tolerance);
+  const int levels = wanted.all_levels();
+  if (levels == 0) return std::make_shared<const SkeletonGraph>(std::move(graph));
+  if (graph.positions.size() > NodeList::max_nodes >> levels) {
+    reader.error(at,
+                 "the skeleton grows too large: " + std::to_string(graph.positions.size()) + " nodes, doubled " +
+                     std::to_string(levels) + " times",
+                 "use fewer `levels`");
+    return nullptr;
+  }
+  return std::make_shared<const SkeletonGraph>(
+      subdivide(graph, wanted.subdivision.value_or(Subdivision::Chaikin), levels));
 }
 
 SharedSkeletonGraph load(const FileSkeleton& wanted, const Place& at, Reader& reader) {
@@ -147,7 +182,7 @@ SharedSkeletonGraph load(const FileSkeleton& wanted, const Place& at, Reader& re
     return graph;
   }
   auto made = read_skeleton(*format, file->bytes, wanted.options, wanted.file.string());
-  if (made) graph = std::make_shared<const SkeletonGraph>(std::move(made->graph));
+  if (made) graph = refined(std::move(made->graph), wanted, at, reader);
   reader.report_file(wanted.file, std::move(file->bytes), made ? made->warnings : made.why());
   return graph;
 }
