@@ -1,6 +1,7 @@
 // Shared by the tests of skeleton files.
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -22,12 +23,11 @@ inline void expect_file_error(SkeletonFormat format, std::string_view text, int 
   for (const Diagnostic& d : file.why()) EXPECT_FALSE(d.message.empty());
 }
 
-/// Reads a text that must be right.
+/// Reads a text that must be right; ends the test otherwise.
 inline SkeletonFile read_good_file(SkeletonFormat format, std::string_view text, const SkeletonOptions& options = {}) {
   auto file = read_skeleton(format, text, options, "t");
   if (file) return std::move(*file);
-  ADD_FAILURE() << text << '\n' << render(file.why()[0], text);
-  return {};
+  throw std::runtime_error(render(file.why()[0], text));
 }
 
 }  // namespace marrow
