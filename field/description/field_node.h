@@ -63,6 +63,7 @@ struct CurveSkeleton {
   Subdivision subdivision = Subdivision::Chaikin;
   int levels = 4;             ///< level of detail; 0 is the control polyline itself
   std::vector<int> sticking;  ///< indices of points through which the curve passes as it is; both ends always do
+  bool closed = false;        ///< the last point is joined to the first
   friend bool operator==(const CurveSkeleton&, const CurveSkeleton&) = default;
 };
 /// A forest of nodes, each joined to its parent by a segment. Built by the SWC reader.

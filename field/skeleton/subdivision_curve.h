@@ -15,8 +15,9 @@ inline constexpr std::size_t max_curve_points = 10'000'000;
 ///            the uniform quadratic B-spline;
 ///   Cubic    mask (1/4, 1/2, 1/4): the middles of edges, and joints moved an eighth toward each neighbour; the
 ///            limit is the uniform cubic B-spline.
-/// Sticking joints, and both ends, stay where they are and stay sticking. Radii follow the same mask.
-/// Precondition: validated; as many radii as points, at least two, sticking joints ascending or not, all < points.
+/// Sticking joints, and both ends, stay where they are and stay sticking. Radii follow the same mask. A closed curve
+/// has no ends: it is smoothed all around, and the polyline ends in its first point again. Precondition: validated; as
+/// many radii as points, at least two, sticking joints ascending or not, all < points.
 PolylineSkeleton subdivide(const CurveSkeleton&);
 
 }  // namespace marrow

@@ -6,8 +6,10 @@
 #include <optional>
 
 #include "field/kernel/inverse_family.h"
+#include "renderer/scene/curve_forms.h"
 #include "renderer/scene/node_forms.h"
 #include "renderer/scene/primitive_forms.h"
+#include "renderer/scene/skeleton_forms.h"
 
 namespace marrow {
 namespace {
@@ -216,6 +218,7 @@ Form<FieldDescription> field_tree() {
 
 std::vector<const TableInfo*> field_tables() {
   std::vector<const TableInfo*> tables = primitive_tables();
+  for (const auto& more : {curve_tables(), skeleton_tables()}) tables.insert(tables.end(), more.begin(), more.end());
   for (const TableInfo* table : {&kernel_table().info, &blend_table().info, &union_table().info,
                                  &transform_table().info, &rotation_table().info})
     tables.push_back(table);

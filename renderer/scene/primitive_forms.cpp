@@ -1,42 +1,19 @@
-// Tables of point, segment, polyline, curve and skeleton; what they share is written once.
+// Tables of point, segment, triangle, circle and arc; what they share is written once.
 #include "renderer/scene/primitive_forms.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <memory>
 #include <numbers>
 
-#include "renderer/scene/files/swc.h"
-#include "renderer/scene/scalar.h"
+#include "renderer/scene/drawn.h"
 
 namespace marrow {
 namespace {
 
-// A skeleton with what every primitive may say. The skeleton is a base so that its members can be bound as they are.
 template <class Skeleton>
-struct Drawn : Skeleton {
-  std::optional<SkeletonModel> model;
-  std::optional<double> alpha;
-  MaterialId material;
-};
-
-template <class Skeleton>
-std::vector<Key<Drawn<Skeleton>>> with_common_keys(std::vector<Key<Drawn<Skeleton>>> keys) {
-  using Owner = Drawn<Skeleton>;
-  keys.push_back(key<Owner>("model", &Owner::model, skeleton_model(), "its field; the blend's when left out"));
-  keys.push_back(key<Owner>("alpha", &Owner::alpha, primitive_alpha(),
-                            "in radians, for `alpha: per_skeleton`; contact when left out"));
-  keys.push_back(key<Owner>("material", &Owner::material, material_name(), "the object's when left out"));
-  return keys;
-}
-
-template <class Skeleton>
-Primitive primitive(Drawn<Skeleton> drawn) {
-  Primitive made{.skeleton = {}, .model = drawn.model, .alpha = drawn.alpha, .material = drawn.material};
-  made.skeleton = static_cast<Skeleton&&>(std::move(drawn));
-  return made;
+Primitive primitive(const Drawn<Skeleton>& drawn) {
+  return primitive_with(static_cast<const Skeleton&>(drawn), drawn);
 }
 
 const Table<Drawn<PointSkeleton>>& point_table() {
@@ -55,13 +32,6 @@ void set_radius(Drawn<SegmentSkeleton>& segment, const std::vector<double>& radi
   segment.radius_to = radii.back();
 }
 
-Form<std::vector<double>> radii(std::size_t min, std::size_t max, const std::string& words) {
-  const Form<double> one = number(any_radius());
-  return either<std::vector<double>>(
-      {mapped<std::vector<double>>(one, [](double r) { return std::vector<double>{r}; }), list_of(one, min, max)},
-      words);
-}
-
 const Table<Drawn<SegmentSkeleton>>& segment_table() {
   using Segment = Drawn<SegmentSkeleton>;
   static const Table<Segment> table(
@@ -76,68 +46,6 @@ const Table<Drawn<SegmentSkeleton>>& segment_table() {
         reader.error(v.place, "the segment has no length: `from` and `to` are equal", "a ball is `point: {at: …}`");
         return false;
       });
-  return table;
-}
-
-// One radius for all points or one for each.
-template <class Line>
-bool radii_fit(const Line& line, const Value& v, Reader& reader) {
-  if (line.radii.size() == 1 || line.radii.size() == line.points.size()) return true;
-  const Member* radius = v.find("radius");
-  reader.error(radius->value.place,
-               std::to_string(line.points.size()) + " points but " + std::to_string(line.radii.size()) + " radii",
-               "give one radius for each point, or one number for all");
-  return false;
-}
-template <class Line>
-Primitive with_all_radii(Drawn<Line> line) {
-  if (line.radii.size() == 1) line.radii.resize(line.points.size(), line.radii.front());
-  return primitive<Line>(std::move(line));
-}
-
-const Table<Drawn<PolylineSkeleton>>& polyline_table() {
-  using Polyline = Drawn<PolylineSkeleton>;
-  static const Table<Polyline> table(
-      "polyline", "Segments one after another.",
-      with_common_keys<PolylineSkeleton>(
-          {key<Polyline>("points", &PolylineSkeleton::points, list_of(position(), 2), "in order").required(),
-           key<Polyline>("radius", &PolylineSkeleton::radii,
-                         radii(2, no_limit, "a radius above 0, or one for each point"), "of its surface when alone")
-               .required()}),
-      radii_fit<Polyline>);
-  return table;
-}
-
-bool joints_fit(const Drawn<CurveSkeleton>& curve, const Value& v, Reader& reader) {
-  bool fit = radii_fit(curve, v, reader);
-  for (std::size_t i = 0; i < curve.sticking.size(); ++i) {
-    if (static_cast<std::size_t>(curve.sticking[i]) < curve.points.size()) continue;
-    reader.error(v.find("sticking")->value.items[i].place,
-                 "no joint " + std::to_string(curve.sticking[i]) + ": the curve has " +
-                     std::to_string(curve.points.size()) + " points",
-                 "joints are counted from 0");
-    fit = false;
-  }
-  return fit && reader.spend_nodes(curve.points.size() << curve.levels, v.place);
-}
-
-const Table<Drawn<CurveSkeleton>>& curve_table() {
-  using Curve = Drawn<CurveSkeleton>;
-  static const Table<Curve> table(
-      "curve", "A smooth curve: segments refined by subdivision (Cani and Hornus 2001). It passes through its ends.",
-      with_common_keys<CurveSkeleton>(
-          {key<Curve>("points", &CurveSkeleton::points, list_of(position(), 2), "control points in order").required(),
-           key<Curve>("radius", &CurveSkeleton::radii, radii(2, no_limit, "a radius above 0, or one for each point"),
-                      "of its surface when alone; refined like the points")
-               .required(),
-           key<Curve>("subdivision", &CurveSkeleton::subdivision,
-                      choice<Subdivision>({{"chaikin", Subdivision::Chaikin}, {"cubic", Subdivision::Cubic}}),
-                      "toward the quadratic (`chaikin`) or the cubic B-spline"),
-           key<Curve>("levels", &CurveSkeleton::levels, integer(0, CurveSkeleton::max_levels),
-                      "level of detail: each doubles the segments"),
-           key<Curve>("sticking", &CurveSkeleton::sticking, list_of(integer(0, std::numeric_limits<int>::max())),
-                      "points that stay as they are, counted from 0; the curve passes through them with a corner")}),
-      joints_fit);
   return table;
 }
 
@@ -232,45 +140,17 @@ Primitive arc_of(const Drawn<Round>& drawn) {
   arc.axis2 = normalize(arc.axis2 - first * dot(arc.axis2, first)).vec();
   arc.begin = drawn.angles_deg[0] * degree_in_radians;
   arc.end = drawn.angles_deg[1] * degree_in_radians;
-  return {.skeleton = arc, .model = drawn.model, .alpha = drawn.alpha, .material = drawn.material};
-}
-
-struct SkeletonFile {
-  std::filesystem::path file;
-  double scale = 1;
-  std::optional<double> min_radius;
-};
-const Table<Drawn<SkeletonFile>>& skeleton_table() {
-  using File = Drawn<SkeletonFile>;
-  static const Table<File> table(
-      "skeleton", "All branches of an SWC file.",
-      with_common_keys<SkeletonFile>(
-          {key<File>("file", &SkeletonFile::file, file_name(), "an .swc file, relative to this one").required(),
-           key<File>("scale", &SkeletonFile::scale, number(any_radius()), "multiplies positions and radii"),
-           key<File>("min_radius", &SkeletonFile::min_radius, number(any_radius()),
-                     "thinner places are made this thick; in scene units, after `scale`")}));
-  return table;
-}
-
-SharedSkeletonGraph load(const SkeletonFile& wanted, const Place& at, Reader& reader) {
-  const std::string id = wanted.file.string() + '\n' + number_text(wanted.scale) + '\n' +
-                         (wanted.min_radius ? number_text(*wanted.min_radius) : "");
-  const auto known = reader.skeletons.find(id);
-  if (known != reader.skeletons.end()) return known->second;
-  SharedSkeletonGraph& graph = reader.skeletons[id];  // stays null after a mistake, so that it is reported once
-  auto file = reader.open(wanted.file, at);
-  if (!file) return graph;
-  auto swc = read_swc(file->bytes, {.scale = wanted.scale, .min_radius = wanted.min_radius}, wanted.file.string());
-  if (swc) graph = std::make_shared<const SkeletonGraph>(std::move(swc->graph));
-  reader.report_file(wanted.file, std::move(file->bytes), swc ? swc->warnings : swc.why());
-  return graph;
-}
-
-Primitive with_graph(const Drawn<SkeletonFile>& drawn, SharedSkeletonGraph graph) {
-  return {.skeleton = std::move(graph), .model = drawn.model, .alpha = drawn.alpha, .material = drawn.material};
+  return primitive_with(arc, drawn);
 }
 
 }  // namespace
+
+Form<std::vector<double>> radii(std::size_t min, std::size_t max, const std::string& words) {
+  const Form<double> one = number(any_radius());
+  return either<std::vector<double>>(
+      {mapped<std::vector<double>>(one, [](double r) { return std::vector<double>{r}; }), list_of(one, min, max)},
+      words);
+}
 
 Form<SkeletonModel> skeleton_model() {
   return choice<SkeletonModel>({{"integral", SkeletonModel::Integral}, {"distance", SkeletonModel::Distance}});
@@ -280,31 +160,12 @@ Form<double> primitive_alpha() { return radians(between(-1, 1.570796326794896619
 
 Form<Primitive> point_form() { return mapped<Primitive>(map_of(point_table()), primitive<PointSkeleton>); }
 Form<Primitive> segment_form() { return mapped<Primitive>(map_of(segment_table()), primitive<SegmentSkeleton>); }
-Form<Primitive> polyline_form() {
-  return mapped<Primitive>(map_of(polyline_table()), with_all_radii<PolylineSkeleton>);
-}
-Form<Primitive> curve_form() { return mapped<Primitive>(map_of(curve_table()), with_all_radii<CurveSkeleton>); }
-
 Form<Primitive> triangle_form() { return mapped<Primitive>(map_of(triangle_table()), primitive<TriangleSkeleton>); }
 Form<Primitive> circle_form() { return mapped<Primitive>(map_of(circle_table()), arc_of); }
 Form<Primitive> arc_form() { return mapped<Primitive>(map_of(arc_table()), arc_of); }
 
-Form<Primitive> skeleton_form() {
-  const Form<Drawn<SkeletonFile>> map = map_of(skeleton_table());
-  Form<Primitive> form = mapped<Primitive>(map, [](const Drawn<SkeletonFile>&) { return Primitive{}; });
-  form.read = [map](const Value& v, Reader& reader) -> std::optional<Primitive> {
-    const auto wanted = map.read(v, reader);
-    if (!wanted) return std::nullopt;
-    const Member* file = v.find("file");
-    auto graph = load(*wanted, file->value.place, reader);
-    return graph ? std::optional(with_graph(*wanted, std::move(graph))) : std::nullopt;
-  };
-  return form;
-}
-
 std::vector<const TableInfo*> primitive_tables() {
-  return {&point_table().info,    &segment_table().info, &polyline_table().info, &curve_table().info,
-          &triangle_table().info, &circle_table().info,  &arc_table().info,      &skeleton_table().info};
+  return {&point_table().info, &segment_table().info, &triangle_table().info, &circle_table().info, &arc_table().info};
 }
 
 }  // namespace marrow

@@ -12,17 +12,14 @@ namespace marrow {
 Form<SkeletonModel> skeleton_model();
 /// The projection angle as a number of radians in [-1, pi/2].
 Form<double> primitive_alpha();
+/// One radius, or a list of `min` to `max` of them.
+Form<std::vector<double>> radii(std::size_t min, std::size_t max, const std::string& words);
 
 Form<Primitive> point_form();
 Form<Primitive> segment_form();
-Form<Primitive> polyline_form();
 Form<Primitive> triangle_form();
 Form<Primitive> circle_form();
 Form<Primitive> arc_form();
-/// A subdivision curve.
-Form<Primitive> curve_form();
-/// Reads the file that it names.
-Form<Primitive> skeleton_form();
 
 std::vector<const TableInfo*> primitive_tables();
 

@@ -163,6 +163,40 @@ TEST_F(ReadScene, ASkeletonThatIsPlacedTwiceIsHeldOnce) {
   EXPECT_THAT(record.warnings[0].message, HasSubstr("1 of 2 nodes have the radius 0"));
 }
 
+TEST_F(ReadScene, CurvesBranchAndClose) {
+  const auto scene = read(R"(marrow: 1
+objects:
+  - field:
+      blend:
+        of:
+          - curve: {points: [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 1, 0], [3, -1, 0]], radius: [1, 1, 2, 1, 1], levels: 1,
+                    branches: [[0, 1, 2], [2, 3], [2, 4]]}
+          - polyline: {points: [[0, 0, 0], [1, 0, 0], [0, 1, 0]], radius: 0.1, closed: true}
+)");
+  ASSERT_TRUE(scene) << render_all(scene.why(), record.sources);
+  const auto& field = std::get<FieldDescription>(scene->objects[0].shape);
+  const auto skeleton = [&](std::size_t i) { return std::get<Primitive>(field.nodes[i].what).skeleton; };
+  const SkeletonGraph graph = *std::get<SharedSkeletonGraph>(skeleton(0));
+  EXPECT_EQ(graph.parents, (std::vector<std::int32_t>{-1, 0, 1, 2, -1, 4, -1, 6}));
+  for (const std::size_t meeting : {3u, 4u, 6u}) EXPECT_EQ(graph.positions[meeting], (Vec3d{2, 0, 0}));
+  EXPECT_EQ(graph.radii[3], 2);
+  EXPECT_EQ(std::get<PolylineSkeleton>(skeleton(1)).points.size(), 4u);
+}
+
+TEST_F(ReadScene, SkeletonsOfFilesAreSimplifiedAndSmoothed) {
+  write("n.swc", "1 1 0 0 0 1 -1\n2 1 1 0 0 1 1\n3 1 2 0 0 1 2\n4 1 2 2 0 1 3\n");
+  const auto nodes = [&](const std::string& options) {
+    const auto scene = read("marrow: 1\nobjects:\n  - field: {skeleton: {file: n.swc" + options + "}}\n");
+    const auto& field = std::get<FieldDescription>(scene->objects[0].shape);
+    return std::get<SharedSkeletonGraph>(std::get<Primitive>(field[field.root].what).skeleton)->positions.size();
+  };
+  EXPECT_EQ(nodes(""), 4u);
+  EXPECT_EQ(nodes(", simplify: 0.001"), 3u);
+  EXPECT_EQ(nodes(", levels: 1"), 6u);
+  EXPECT_EQ(nodes(", subdivision: cubic"), 13u);
+  EXPECT_EQ(nodes(", simplify: 0.001, subdivision: cubic, levels: 1"), 5u);
+}
+
 TEST_F(ReadScene, TheHashIsOfAllThatWasRead) {
   write("n.swc", "1 1 0 0 0 1 -1\n");
   const std::string text = "marrow: 1\nobjects:\n  - field: {skeleton: {file: n.swc}}\n";
@@ -176,7 +210,7 @@ TEST_F(ReadScene, TheHashIsOfAllThatWasRead) {
 }
 
 TEST_F(ReadScene, SamplesOfTheRepositoryLoad) {
-  for (const char* name : {"rat_ca1_pyramidal_NMO_49821.swc", "tree.swc", "vessel.swc"}) {
+  for (const char* name : {"rat_ca1_pyramidal_NMO_49821.swc", "tree.swc", "vessel.swc", "1crn.pdb", "tuft.hair"}) {
     const std::string file = std::string(MARROW_SOURCE_DIR) + "/scenes/data/" + name;
     EXPECT_TRUE(read("marrow: 1\nobjects:\n  - field: {skeleton: {file: " + file + "}}\n")) << name;
   }

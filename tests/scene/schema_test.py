@@ -41,7 +41,12 @@ GOOD = {
                    {"segment": {"from": [0, 0, 0], "to": [1, 0, 0], "radius": [0.5, 0.2], "alpha": 0.9,
                                 "material": "gold", "model": "distance"}},
                    {"polyline": {"points": [[0, 0, 0], [1, 0, 0]], "radius": 0.1}},
-                   {"skeleton": {"file": os.path.join(DATA, "tree.swc"), "scale": 2, "min_radius": 0.01}}]}}},
+                   {"curve": {"points": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "radius": 0.1, "levels": 2,
+                              "branches": [[0, 1], [1, 2, 0]]}},
+                   {"skeleton": {"file": os.path.join(DATA, "tree.swc"), "scale": 2, "min_radius": 0.01,
+                                 "simplify": 0.01, "subdivision": "cubic", "levels": 1, "radius_scale": 2}},
+                   {"skeleton": {"file": os.path.join(DATA, "1crn.pdb"), "format": "pdb", "elements": ["C", "N"],
+                                 "bonds": 0.2, "radius": 0.5}}]}}},
         {"name": "rest", "field": {"union": {"of": [
             {"use": "ball"},
             {"transform": {"translate": [1, 0, 0], "rotate": {"axis": [0, 1, 0], "angle": 90}, "scale": 2,

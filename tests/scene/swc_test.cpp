@@ -11,7 +11,9 @@
 namespace marrow {
 namespace {
 
-Result<SwcSkeleton> read(std::string_view text, SwcOptions options = {}) { return read_swc(text, options, "t.swc"); }
+Result<SkeletonFile> read(std::string_view text, SkeletonOptions options = {}) {
+  return read_swc(text, options, "t.swc");
+}
 
 void expect_error(std::string_view text, int line, std::string_view message) {
   const auto swc = read(text);

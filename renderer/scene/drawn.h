@@ -1,0 +1,38 @@
+// What every primitive may say beside its skeleton: model, alpha, material.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "field/description/field_node.h"
+#include "renderer/scene/primitive_forms.h"
+#include "renderer/scene/table.h"
+
+namespace marrow {
+
+/// A skeleton with what every primitive may say. The skeleton is a base so that its members can be bound as they are.
+template <class Skeleton>
+struct Drawn : Skeleton {
+  std::optional<SkeletonModel> model;
+  std::optional<double> alpha;
+  MaterialId material;
+};
+
+template <class Skeleton>
+std::vector<Key<Drawn<Skeleton>>> with_common_keys(std::vector<Key<Drawn<Skeleton>>> keys) {
+  using Owner = Drawn<Skeleton>;
+  keys.push_back(key<Owner>("model", &Owner::model, skeleton_model(), "its field; the blend's when left out"));
+  keys.push_back(key<Owner>("alpha", &Owner::alpha, primitive_alpha(),
+                            "in radians, for `alpha: per_skeleton`; contact when left out"));
+  keys.push_back(key<Owner>("material", &Owner::material, material_name(), "the object's when left out"));
+  return keys;
+}
+
+/// The primitive with this skeleton and what the author said about it.
+template <class Skeleton, class Any>
+Primitive primitive_with(Any skeleton, const Drawn<Skeleton>& drawn) {
+  return {.skeleton = std::move(skeleton), .model = drawn.model, .alpha = drawn.alpha, .material = drawn.material};
+}
+
+}  // namespace marrow

@@ -1,0 +1,69 @@
+// The rules for positions and radii that all skeleton files share.
+#include "renderer/scene/files/node_list.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace marrow {
+
+void NodeList::reserve(std::size_t nodes) {
+  nodes = std::min(nodes, max_nodes);
+  graph_.positions.reserve(nodes);
+  graph_.radii.reserve(nodes);
+  graph_.parents.reserve(nodes);
+}
+
+void NodeList::check_last(const char* place) {
+  constexpr double largest = 1e15;  // as every coordinate of a scene
+  if (!(max_component(abs(graph_.positions.back())) <= largest && graph_.radii.back() <= largest))
+    problems_.complain(place, "the node lies beyond 1e15 scene units");
+  if (size() > max_nodes) problems_.give_up(place, fmt::format("the file has more than {} nodes", max_nodes));
+}
+
+void NodeList::add(const Vec3d& at, double radius, const char* place) {
+  if (radius < 0) return problems_.complain(place, "the radius is negative");
+  graph_.positions.push_back(at * options_.scale);
+  graph_.radii.push_back(options_.radius.value_or(radius * options_.scale * options_.radius_scale));
+  check_last(place);
+}
+
+void NodeList::add(const Vec3d& at, double radius, std::int32_t parent, const char* place) {
+  const std::size_t before = size();
+  add(at, radius, place);
+  if (size() > before) graph_.parents.push_back(parent);
+}
+
+void NodeList::add_in_scene_units(const Vec3d& at_in_file, double radius, std::int32_t parent, const char* place) {
+  graph_.positions.push_back(at_in_file * options_.scale);
+  graph_.radii.push_back(radius);
+  graph_.parents.push_back(parent);
+  check_last(place);
+}
+
+SkeletonFile NodeList::finish() && {
+  SkeletonFile made;
+  const auto zeros = std::count(graph_.radii.begin(), graph_.radii.end(), 0.0);
+  double floor = options_.min_radius.value_or(0);
+  if (zeros > 0 && !options_.min_radius) {
+    floor = std::numeric_limits<double>::infinity();
+    for (const double r : graph_.radii)
+      if (r > 0) floor = std::min(floor, r);
+    if (std::isinf(floor)) {
+      problems_.complain_of_file("every radius of the file is 0", "give the skeleton a `radius` or a `min_radius`");
+      return made;
+    }
+    made.warnings.push_back(problems_.warning(
+        fmt::format("{} of {} nodes have the radius 0; they get the smallest other radius of the file, {} scene units",
+                    zeros, graph_.radii.size(), floor),
+        "choose it with `min_radius`"));
+  }
+  for (double& r : graph_.radii) r = std::max(r, floor);
+  made.graph = std::move(graph_);
+  return made;
+}
+
+}  // namespace marrow

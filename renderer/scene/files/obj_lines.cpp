@@ -1,0 +1,151 @@
+// Statements first; nodes are made of them at the end, because a line may use a vertex that comes later.
+#include "renderer/scene/files/obj_lines.h"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "renderer/scene/files/node_list.h"
+#include "renderer/scene/files/text_scan.h"
+
+namespace marrow {
+namespace {
+
+struct Vertex {
+  Vec3d at;
+  double radius;  ///< NaN: the file does not say
+};
+
+/// One `l`, or one `p`.
+struct Element {
+  std::size_t end;  ///< in the list of indices; it begins where the one before ends
+  const char* place;
+  bool is_line;
+};
+
+class ObjReader {
+ public:
+  ObjReader(std::string_view text, const SkeletonOptions& options, const std::string& name)
+      : text_(text), options_(options), problems_(text, name), list_(options, problems_) {}
+
+  Result<SkeletonFile> read() {
+    Lines lines(text_);
+    std::string_view keyword;
+    for (std::string_view line; !problems_.is_full() && lines.next(line);) read_line(line, keyword);
+    if (elements_.empty() && problems_.none())
+      problems_.complain_of_file("the file has no lines and no points",
+                                 "a line is: l 1 2 3; triangles are for `mesh:`");
+    if (problems_.none()) make_nodes();
+    SkeletonFile made;
+    if (problems_.none()) made = std::move(list_).finish();
+    if (!problems_.none()) return problems_.take();
+    return made;
+  }
+
+ private:
+  // `keyword` is that of a statement which goes on from the line before, else empty.
+  void read_line(std::string_view line, std::string_view& keyword) {
+    const char* const start = line.data();
+    line = line.substr(0, line.find('#'));
+    const bool goes_on = line.ends_with('\\');
+    if (goes_on) line.remove_suffix(1);
+    const bool is_new = keyword.empty();
+    if (is_new) keyword = next_word(line);
+    if (keyword == "v" && is_new) read_vertex(line, start);
+    if (keyword == "l" || keyword == "p") read_element(line, start, keyword == "l", is_new, !goes_on);
+    if (!goes_on) keyword = {};
+  }
+
+  // x y z, and then nothing, a radius, or a colour.
+  void read_vertex(std::string_view line, const char* start) {
+    double value[4] = {0, 0, 0, std::numeric_limits<double>::quiet_NaN()};
+    int count = 0;
+    for (std::string_view word = next_word(line); !word.empty(); word = next_word(line), ++count) {
+      const auto number = finite_number(word);
+      if (!number)
+        return problems_.complain(word.data(), quoted_word(word) + " is not a finite number",
+                                  "a vertex is: v x y z, or: v x y z radius");
+      if (count < 4) value[count] = *number;
+    }
+    if (count < 3)
+      return problems_.complain(start, fmt::format("the vertex has {} numbers, it needs 3", count),
+                                "a vertex is: v x y z, or: v x y z radius");
+    if (count > 5) value[3] = std::numeric_limits<double>::quiet_NaN();
+    vertices_.push_back({{value[0], value[1], value[2]}, value[3]});
+  }
+
+  void read_element(std::string_view line, const char* start, bool is_line, bool is_first, bool is_last) {
+    if (is_first) elements_.push_back({indices_.size(), start, is_line});
+    for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
+      const auto number = finite_number(word.substr(0, word.find('/')));
+      const auto index = number ? whole_number(*number) : std::nullopt;
+      const auto count = static_cast<long long>(vertices_.size());
+      const bool is_valid =
+          index && *index != 0 && *index >= -count && *index <= static_cast<long long>(NodeList::max_nodes);
+      if (!is_valid && index && *index < 0)
+        return problems_.complain(word.data(), fmt::format("there is no vertex {}: {} came before", *index, count));
+      if (!is_valid)
+        return problems_.complain(word.data(), quoted_word(word) + " is not the number of a vertex",
+                                  "vertices are counted from 1, or from -1 backwards");
+      indices_.push_back(static_cast<std::int32_t>(*index > 0 ? *index - 1 : count + *index));
+    }
+    if (indices_.size() > NodeList::max_nodes)
+      return problems_.give_up(start, fmt::format("the lines have more than {} nodes", NodeList::max_nodes));
+    Element& element = elements_.back();
+    const std::size_t begin = elements_.size() > 1 ? elements_[elements_.size() - 2].end : 0;
+    element.end = indices_.size();
+    if (is_last && element.end - begin < (is_line ? 2u : 1u))
+      problems_.complain(start, is_line ? "a line needs two vertices" : "a point needs a vertex");
+  }
+
+  void make_nodes() {
+    list_.reserve(indices_.size());
+    node_of_.assign(vertices_.size(), -1);
+    std::size_t i = 0;
+    for (const Element& element : elements_) {
+      std::int32_t before = -1;
+      for (; i < element.end && !problems_.is_full(); ++i) before = add(indices_[i], before, element);
+    }
+  }
+
+  // A line that begins at a vertex in use goes on from its node; one that passes it gets a node of its own there.
+  std::int32_t add(std::int32_t index, std::int32_t before, const Element& element) {
+    if (index >= static_cast<std::int32_t>(vertices_.size())) {
+      problems_.complain(element.place,
+                         fmt::format("there is no vertex {}: the file has {}", index + 1, vertices_.size()));
+      return before;
+    }
+    const Vertex& vertex = vertices_[static_cast<std::size_t>(index)];
+    std::int32_t& node = node_of_[static_cast<std::size_t>(index)];
+    if (before < 0 && node >= 0 && element.is_line) return node;
+    if (std::isnan(vertex.radius) && !options_.radius) {
+      problems_.give_up(element.place, fmt::format("vertex {} has no radius", index + 1),
+                        "give the skeleton a `radius`, or each vertex a fourth number: v x y z radius");
+      return before;
+    }
+    node = list_.next_index();
+    list_.add(vertex.at, options_.radius.value_or(vertex.radius), element.is_line ? before : -1, element.place);
+    return node;
+  }
+
+  std::string_view text_;
+  const SkeletonOptions& options_;
+  FileProblems problems_;
+  NodeList list_;
+  std::vector<Vertex> vertices_;
+  std::vector<std::int32_t> indices_;
+  std::vector<Element> elements_;
+  std::vector<std::int32_t> node_of_;
+};
+
+}  // namespace
+
+Result<SkeletonFile> read_obj_lines(std::string_view text, const SkeletonOptions& options, const std::string& name) {
+  return ObjReader(text, options, name).read();
+}
+
+}  // namespace marrow
