@@ -3,19 +3,29 @@
 
 #include <variant>
 
+#include "field/tree/nodes/bend.h"
+#include "field/tree/nodes/contact.h"
 #include "field/tree/nodes/crisp.h"
+#include "field/tree/nodes/restricted_blend.h"
 #include "field/tree/nodes/ricci.h"
+#include "field/tree/nodes/shear.h"
+#include "field/tree/nodes/soft_csg.h"
 #include "field/tree/nodes/sphere.h"
+#include "field/tree/nodes/sum.h"
+#include "field/tree/nodes/taper.h"
 #include "field/tree/nodes/twist.h"
+#include "field/tree/nodes/weighted_blend.h"
 
 namespace marrow {
 
 /// Documentation lists them in this order.
-using AnyNode = std::variant<  //
-    Sphere,                    // primitives
-    Intersection, Difference,  // set operations
-    Ricci,                     // blends
-    Twist>;                    // warps
+using AnyNode = std::variant<                     //
+    Sphere,                                       // primitives
+    Intersection, Difference,                     // set operations
+    SoftUnion, SoftIntersection, SoftDifference,  //
+    Sum, Ricci, WeightedBlend, RestrictedBlend,   // blends
+    Contact,                                      //
+    Twist, Taper, Bend, Shear>;                   // warps
 
 inline const NodeInfo& info_of(const AnyNode& node) {
   return std::visit([]<class Kind>(const Kind&) -> const NodeInfo& { return Kind::info; }, node);
