@@ -5,6 +5,7 @@
 
 #include "field/tree/nodes/bend.h"
 #include "field/tree/nodes/contact.h"
+#include "field/tree/nodes/convolution_segment.h"
 #include "field/tree/nodes/crisp.h"
 #include "field/tree/nodes/restricted_blend.h"
 #include "field/tree/nodes/ricci.h"
@@ -21,6 +22,7 @@ namespace marrow {
 /// Documentation lists them in this order.
 using AnyNode = std::variant<                     //
     Sphere,                                       // primitives
+    ConvolutionSegment,                           //
     Intersection, Difference,                     // set operations
     SoftUnion, SoftIntersection, SoftDifference,  //
     Sum, Ricci, WeightedBlend, RestrictedBlend,   // blends
