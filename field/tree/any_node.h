@@ -7,6 +7,7 @@
 #include "field/tree/nodes/contact.h"
 #include "field/tree/nodes/convolution_segment.h"
 #include "field/tree/nodes/crisp.h"
+#include "field/tree/nodes/local_convolution.h"
 #include "field/tree/nodes/restricted_blend.h"
 #include "field/tree/nodes/ricci.h"
 #include "field/tree/nodes/shear.h"
@@ -22,7 +23,7 @@ namespace marrow {
 /// Documentation lists them in this order.
 using AnyNode = std::variant<                     //
     Sphere,                                       // primitives
-    ConvolutionSegment,                           //
+    ConvolutionSegment, LocalConvolution,         //
     Intersection, Difference,                     // set operations
     SoftUnion, SoftIntersection, SoftDifference,  //
     Sum, Ricci, WeightedBlend, RestrictedBlend,   // blends
