@@ -73,9 +73,9 @@ X LocalConvolution::value(const Vec3<X>& p) const {
     return most;
   } else {
     EnclosureOfPlaces<X> all;
-    chain.for_each_group(p, [&](std::span<const Place<X>> group, bool certain, bool may_tear) {
+    chain.for_each_group(p, [&](std::span<const PlanePlace<X>> group, bool certain, bool may_tear) {
       std::vector<X> fields;
-      for (const Place<X>& place : group) fields.push_back(beside(chain, p, place.at));
+      for (const PlanePlace<X>& place : group) fields.push_back(beside(chain, p, place.at));
       all.add(fields, certain, may_tear);
     });
     return all.largest();

@@ -11,7 +11,7 @@ namespace marrow {
 /// An arc length along a polyline, and whether the point passes from before the plane to behind it there (-1), from
 /// behind to before (1), or who knows (0).
 template <Number X>
-struct Place {
+struct PlanePlace {
   X at;
   int crossing;
 };
@@ -78,7 +78,7 @@ void PlaneChain::places_on_edge(const Vec3<X>& p, std::size_t edge, Visit visit)
   const double length = start[edge + 1] - start[edge];
   roots_of_quadratic(-dot(dd, dr), b, c, [&](const X& u, int crossing) {
     if (!(upper(u) >= -slack && lower(u) <= 1 + slack)) return;
-    visit(Place<X>{X(start[edge]) + X(length) * clamp(u, 0, 1), crossing});
+    visit(PlanePlace<X>{X(start[edge]) + X(length) * clamp(u, 0, 1), crossing});
   });
 }
 
@@ -86,7 +86,7 @@ template <Number X, class Visit>
 void PlaneChain::for_each_place(const Vec3<X>& p, Visit visit) const {
   if (!(lower(height(p, 0)) > 0)) visit(X(0.0));
   for (std::size_t k = 0; k + 1 < points.size(); ++k)
-    places_on_edge(p, k, [&](const Place<X>& place) { visit(place.at); });
+    places_on_edge(p, k, [&](const PlanePlace<X>& place) { visit(place.at); });
   if (!(upper(height(p, points.size() - 1)) < 0)) visit(X(length()));
 }
 
@@ -94,13 +94,13 @@ void PlaneChain::for_each_place(const Vec3<X>& p, Visit visit) const {
 /// far before, a point is ahead of the first plane, and behind the last seen from far behind.
 template <Number X, class Visit>
 void PlaneChain::for_each_group(const Vec3<X>& p, Visit visit) const {
-  std::vector<Place<X>> group;
+  std::vector<PlanePlace<X>> group;
   int before = 1;
   const auto settle = [&](int side) {
     if (side == 0) return;
     bool torn = side == before;
-    for (const Place<X>& place : group) torn = torn || place.crossing != side;
-    if (!group.empty()) visit(std::span<const Place<X>>(group), side != before, torn);
+    for (const PlanePlace<X>& place : group) torn = torn || place.crossing != side;
+    if (!group.empty()) visit(std::span<const PlanePlace<X>>(group), side != before, torn);
     group.clear();
     before = side;
   };
@@ -109,7 +109,7 @@ void PlaneChain::for_each_group(const Vec3<X>& p, Visit visit) const {
     const X h = height(p, k);
     if (k == 0 && lower(h) <= 0) group.push_back({X(0.0), -1});
     settle(side_of(h));
-    if (k + 1 < points.size()) places_on_edge(p, k, [&](const Place<X>& place) { group.push_back(place); });
+    if (k + 1 < points.size()) places_on_edge(p, k, [&](const PlanePlace<X>& place) { group.push_back(place); });
     else if (upper(h) >= 0) group.push_back({X(length()), -1});
   }
   settle(-1);
