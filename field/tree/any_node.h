@@ -10,6 +10,7 @@
 #include "field/tree/nodes/local_convolution.h"
 #include "field/tree/nodes/restricted_blend.h"
 #include "field/tree/nodes/ricci.h"
+#include "field/tree/nodes/sharp_csg.h"
 #include "field/tree/nodes/shear.h"
 #include "field/tree/nodes/soft_csg.h"
 #include "field/tree/nodes/sphere.h"
@@ -21,14 +22,14 @@
 namespace marrow {
 
 /// Documentation lists them in this order.
-using AnyNode = std::variant<                     //
-    Sphere,                                       // primitives
-    ConvolutionSegment, LocalConvolution,         //
-    Intersection, Difference,                     // set operations
-    SoftUnion, SoftIntersection, SoftDifference,  //
-    Sum, Ricci, WeightedBlend, RestrictedBlend,   // blends
-    Contact,                                      //
-    Twist, Taper, Bend, Shear>;                   // warps
+using AnyNode = std::variant<                                                                    //
+    Sphere,                                                                                      // primitives
+    ConvolutionSegment, LocalConvolution,                                                        //
+    Intersection, Difference,                                                                    // set operations
+    SoftUnion, SoftIntersection, SoftDifference,                                                 //
+    SharpUnion, SharpIntersection, SharpDifference, Sum, Ricci, WeightedBlend, RestrictedBlend,  // blends
+    Contact,                                                                                     //
+    Twist, Taper, Bend, Shear>;                                                                  // warps
 
 inline const NodeInfo& info_of(const AnyNode& node) {
   return std::visit([]<class Kind>(const Kind&) -> const NodeInfo& { return Kind::info; }, node);

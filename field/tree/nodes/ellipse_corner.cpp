@@ -3,7 +3,7 @@
 namespace marrow {
 
 // Of the implicit equation of arc().
-EllipseCorner::Partials EllipseCorner::partials(double x, double y) const {
+EllipseCorner::Partials EllipseCorner::partials_at(double x, double y) const {
   switch (part(x, y)) {
     case Part::Vertical:
       return {1, 0};
@@ -21,8 +21,8 @@ EllipseCorner::Partials EllipseCorner::partials(double x, double y) const {
 
 EllipseCorner::Partials EllipseCorner::partials(const Interval& x, const Interval& y) const {
   if (x.hi <= 0 && y.hi <= 0) return {{0, 1}, {0, 1}};  // the origin, where they have no limit
-  const Partials p = partials(std::max(0.0, x.lo), std::max(0.0, y.hi)),
-                 q = partials(std::max(0.0, x.hi), std::max(0.0, y.lo));
+  const Partials p = partials_at(std::max(0.0, x.lo), std::max(0.0, y.hi)),
+                 q = partials_at(std::max(0.0, x.hi), std::max(0.0, y.lo));
   return {hull(p.x, q.x), hull(p.y, q.y)};
 }
 

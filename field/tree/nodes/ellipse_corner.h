@@ -14,15 +14,17 @@ namespace marrow {
 struct EllipseCorner {
   double a = 0.5, b = 0.5;  ///< both in [0, 1), or both above 1
 
-  /// Of x, y >= 0.
+  /// Of x, y >= 0; one of them may be below 0 in a union.
   template <Number X>
   X value(const X& x, const X& y) const;
-
- private:
-  enum class Part { Vertical, Horizontal, Arc };
+  /// Partial derivatives over a box, [0, 1] where it is only the origin.
   struct Partials {
     Interval x, y;
   };
+  Partials partials(const Interval& x, const Interval& y) const;
+
+ private:
+  enum class Part { Vertical, Horizontal, Arc };
 
   Part part(double x, double y) const {
     if (a < 1 ? y <= b * x : y >= b * x) return Part::Vertical;
@@ -47,8 +49,7 @@ struct EllipseCorner {
     const Part p = part(lower(x), lower(y));
     return p == Part::Vertical ? x : p == Part::Horizontal ? y : arc(x, y);
   }
-  Partials partials(double x, double y) const;
-  Partials partials(const Interval& x, const Interval& y) const;
+  Partials partials_at(double x, double y) const;
 };
 
 /// Over a box, the value rises with both fields, and each partial derivative is extreme at the corners where y/x is.

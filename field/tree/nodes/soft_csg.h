@@ -15,7 +15,8 @@ namespace marrow {
 // field that is 0 where the result has no influence, the crisp operation outside an angle of the plane of the two
 // fields that two control points span, arcs of ellipses within, tangent to what they join, so C1 but for the origin.
 // Their text was not at hand; the formulas are our own (ellipse_corner.h), for a surface at 1, a fixed angle at every
-// level, and folding from the left for more than two children, of which "the first" then are all before.
+// level, and folding from the left for more than two children, of which "the first" then are all before. Sharp ones,
+// whose surface has the crease and whose field has none else, are in sharp_csg.h.
 
 /// The union. A control value of 0 begins where the other field begins; with 1 there is a crease.
 struct SoftUnion {
