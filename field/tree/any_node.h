@@ -22,14 +22,15 @@
 namespace marrow {
 
 /// Documentation lists them in this order.
-using AnyNode = std::variant<                                                                    //
-    Sphere,                                                                                      // primitives
-    ConvolutionSegment, LocalConvolution,                                                        //
-    Intersection, Difference,                                                                    // set operations
-    SoftUnion, SoftIntersection, SoftDifference,                                                 //
-    SharpUnion, SharpIntersection, SharpDifference, Sum, Ricci, WeightedBlend, RestrictedBlend,  // blends
-    Contact,                                                                                     //
-    Twist, Taper, Bend, Shear>;                                                                  // warps
+using AnyNode = std::variant<                        //
+    Sphere,                                          // primitives
+    ConvolutionSegment, LocalConvolution,            //
+    Intersection, Difference,                        // set operations
+    SoftUnion, SoftIntersection, SoftDifference,     //
+    SharpUnion, SharpIntersection, SharpDifference,  //
+    Sum, Ricci, WeightedBlend, RestrictedBlend,      // blends
+    Contact,                                         //
+    Twist, Taper, Bend, Shear>;                      // warps
 
 inline const NodeInfo& info_of(const AnyNode& node) {
   return std::visit([]<class Kind>(const Kind&) -> const NodeInfo& { return Kind::info; }, node);
