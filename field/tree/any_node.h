@@ -5,19 +5,34 @@
 #include <utility>
 #include <variant>
 
+#include "field/tree/nodes/bend.h"
+#include "field/tree/nodes/contact.h"
+#include "field/tree/nodes/convolution_segment.h"
 #include "field/tree/nodes/crisp.h"
+#include "field/tree/nodes/local_convolution.h"
+#include "field/tree/nodes/restricted_blend.h"
 #include "field/tree/nodes/ricci.h"
+#include "field/tree/nodes/sharp_csg.h"
+#include "field/tree/nodes/shear.h"
+#include "field/tree/nodes/soft_csg.h"
 #include "field/tree/nodes/sphere.h"
+#include "field/tree/nodes/sum.h"
+#include "field/tree/nodes/taper.h"
 #include "field/tree/nodes/twist.h"
+#include "field/tree/nodes/weighted_blend.h"
 
 namespace marrow {
 
 /// Documentation lists them in this order.
-using AnyNode = std::variant<  //
-    Sphere,                    // primitives
-    Intersection, Difference,  // set operations
-    Ricci,                     // blends
-    Twist>;                    // warps
+using AnyNode = std::variant<                        //
+    Sphere,                                          // primitives
+    ConvolutionSegment, LocalConvolution,            //
+    Intersection, Difference,                        // set operations
+    SoftUnion, SoftIntersection, SoftDifference,     //
+    SharpUnion, SharpIntersection, SharpDifference,  //
+    Sum, Ricci, WeightedBlend, RestrictedBlend,      // blends
+    Contact,                                         //
+    Twist, Taper, Bend, Shear>;                      // warps
 
 struct BoxedNode {
   AnyNode node;

@@ -9,6 +9,7 @@
 //   Vec3<X> child_point(const Vec3<X>& p) const;       a warp: where its one child is asked
 // as templates over the Number X. A field is 1 on its surface, above 1 inside, 0 where nothing is. Further
 //   Box3 support() const                               of a primitive: 0 outside this box, which may be infinite
+//   Box3 extent(double level) const                    of a primitive with an infinite support: below level > 0 outside
 //   Box3 support(std::span<const Box3> children) const of an operator, from its children's; their hull when left out
 //   Box3 support(const Box3& child) const              of a warp
 //   static constexpr bool ignores_zeros                of an operator: a child with the value 0 may be left out

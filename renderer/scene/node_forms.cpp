@@ -117,10 +117,24 @@ struct Choices<std::variant<Kinds...>> {
   static std::vector<const TableInfo*> tables() { return {&choice_table<Kinds>().info...}; }
 };
 
+// Name and documentation of each choice that a parameter may be.
+constexpr std::pair<const char*, const char*> text_of(const Potential*) {
+  return {"potential", "How a bounded field falls to 0 around its surface."};
+}
+constexpr std::pair<const char*, const char*> text_of(const Bulge*) {
+  return {"bulge", "What rises around the place where two bodies touch."};
+}
+constexpr std::pair<const char*, const char*> text_of(const WidthSolution*) {
+  return {"width_solution", "Where the weights of a weighted blend act."};
+}
+template <class... Choice>
+struct ChoiceList {};
+using AllChoices = ChoiceList<Potential, Bulge, WidthSolution>;
+
 template <class Choice>
 const Alternatives<Choice>& alternatives_of() {
-  static const Alternatives<Choice> all("potential", "How a bounded field falls to 0 around its surface.",
-                                        Choices<Choice>::forms());
+  constexpr auto text = text_of(static_cast<const Choice*>(nullptr));
+  static const Alternatives<Choice> all(text.first, text.second, Choices<Choice>::forms());
   return all;
 }
 template <class Choice>
@@ -198,11 +212,17 @@ std::vector<std::pair<std::string, Form<FieldNodeId>>> general_node_forms() { re
 
 std::vector<const TableInfo*> general_node_tables() {
   std::vector<const TableInfo*> tables = Kinds<AnyNode>::tables();
-  const auto potentials = Choices<Potential>::tables();
-  tables.insert(tables.end(), potentials.begin(), potentials.end());
+  const auto add = [&](const std::vector<const TableInfo*>& more) {
+    tables.insert(tables.end(), more.begin(), more.end());
+  };
+  [&]<class... Choice>(ChoiceList<Choice...>) { (add(Choices<Choice>::tables()), ...); }(AllChoices{});
   return tables;
 }
 
-std::vector<const AlternativesInfo*> general_node_alternatives() { return {&alternatives_of<Potential>().info}; }
+std::vector<const AlternativesInfo*> general_node_alternatives() {
+  return []<class... Choice>(ChoiceList<Choice...>) {
+    return std::vector<const AlternativesInfo*>{&alternatives_of<Choice>().info...};
+  }(AllChoices{});
+}
 
 }  // namespace marrow

@@ -1,0 +1,60 @@
+// Precise contact: bodies that touch press each other flat instead of blending.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "field/tree/nodes/bulge.h"
+
+namespace marrow {
+
+/// Each body's field f_i becomes F_i = f_i + B(max over the others of f_j), B the contact term of bulge.h, and the
+/// whole is the largest F_i. With a the largest field and b the second, that is max(a + B(b), b + B(a)): F_i is largest
+/// for the body that has a, or for one that has b. Guaranteed, for any number of bodies: where bodies overlap, F_i = 1
+/// exactly on f_i = max f_j, so that deformed bodies touch without gap and do not overlap; a point inside a body stays
+/// inside one; around the contact each surface goes on smoothly, for b(1) = 0 and b'(1) = -1; nothing changes where the
+/// other fields are below the bulge's `from`; and no surface appears where no body is near, as a bulge is below 1.
+/// Where two others are equally near, the bulge of the third has a crease, as those two have against each other. [Cani
+/// 1993; Angelidis, Jepp, Cani 2002, sec. 5; field-maths 8.3]
+struct Contact {
+  static constexpr NodeInfo info{"contact",
+                                 "Bodies that press each other flat where they touch, with a bulge around (precise "
+                                 "contact modelling). They do not blend.",
+                                 2, any_number_of_children};
+  Bulge bulge;
+  bool first_only = false;
+
+  static void keys(auto&& key) {
+    key("bulge", &Contact::bulge, form::OneOf{}, "what rises around the contact");
+    key("first_only", &Contact::first_only, form::Switch{},
+        "only the first child, as the others deform it: for bodies of different materials, each with its own contact");
+  }
+  std::string problem(std::size_t) const {
+    return std::visit([](const auto& b) { return b.problem(); }, bulge);
+  }
+  /// Where all fields are below the bulge's end, the value is the largest of them.
+  double child_level(double level, std::size_t) const { return std::min(level, from()); }
+  template <Number X>
+  X value(std::span<const X> f) const {
+    if (first_only) return first(f);
+    X most = max(f[0], f[1]), second = min(f[0], f[1]);
+    for (const X& x : f.subspan(2)) {
+      second = max(second, min(most, x));
+      most = max(most, x);
+    }
+    return max(most + contact_term(bulge, second), second + contact_term(bulge, most));
+  }
+
+ private:
+  double from() const {
+    return std::visit([](const auto& b) { return b.from; }, bulge);
+  }
+  template <Number X>
+  X first(std::span<const X> f) const {
+    X most = f[1];
+    for (const X& x : f.subspan(2)) most = max(most, x);
+    return max(f[0] + contact_term(bulge, most), X(0.0));
+  }
+};
+
+}  // namespace marrow

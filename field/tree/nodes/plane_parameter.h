@@ -1,0 +1,162 @@
+// The place of a point on a polyline by planes that turn along it, instead of by its nearest point.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "field/number/functions.h"
+
+namespace marrow {
+
+/// An arc length along a polyline, and whether the point passes from before the plane to behind it there (-1), from
+/// behind to before (1), or who knows (0).
+template <Number X>
+struct PlanePlace {
+  X at;
+  int crossing;
+};
+
+/// A plane at each vertex, half-way between its edges, or across the edge at an end; along an edge the planes between
+/// interpolate their origins and normals. A point has the places of all planes that hold it.   [Angelidis et al. 2002]
+struct PlaneChain {
+  std::span<const Vec3d> points;
+  std::vector<Vec3d> along;   ///< of each edge, unit
+  std::vector<Vec3d> normal;  ///< of the plane of each vertex, unit
+  std::vector<double> start;  ///< arc length at each vertex
+
+  explicit PlaneChain(std::span<const Vec3d> points);
+  double length() const { return start.back(); }
+
+  /// Calls visit(place) for each place of a point, at least one.
+  template <Number X, class Visit>
+  void for_each_place(const Vec3<X>& p, Visit visit) const;
+  /// Calls visit(places, certain, may_tear) with all places that points of a box may have. Of the places of a `certain`
+  /// group, every point has one. Where `may_tear`, a place of the group may vanish within the box.
+  template <Number X, class Visit>
+  void for_each_group(const Vec3<X>& p, Visit visit) const;
+
+ private:
+  // Rounding must not lose a place between two edges.
+  static constexpr double slack = 1e-9;
+
+  template <Number X>
+  X height(const Vec3<X>& p, std::size_t vertex) const {
+    return dot(p - constant<X>(points[vertex]), constant<X>(normal[vertex]));
+  }
+  template <Number X, class Visit>
+  void places_on_edge(const Vec3<X>& p, std::size_t edge, Visit visit) const;
+};
+
+/// Real roots u of a u^2 + b u + c, with the sign of the slope there: c/q and q/a for the q that does not cancel.
+/// [field-maths 8.3]
+template <Number X, class Visit>
+void roots_of_quadratic(double a, const X& b, const X& c, Visit visit) {
+  const X discriminant = square(b) - X(4 * a) * c;
+  if (upper(discriminant) < 0) return;
+  const X root = sqrt(max(discriminant, X(0.0)));
+  const bool sure = lower(discriminant) > 0;
+  if (const int side = lower(b) > 0 ? 1 : upper(b) < 0 ? -1 : 0; side != 0) {
+    const X q = X(-0.5) * (b + X(side) * root);
+    visit(c / q, sure ? side : 0);
+    if (a != 0) visit(q / X(a), sure ? -side : 0);
+  } else if (a != 0) {
+    visit((root - b) / X(2 * a), sure ? 1 : 0);
+    visit((-root - b) / X(2 * a), sure ? -1 : 0);
+  } else if constexpr (is_enclosure<X>) {
+    X anywhere(Interval(0, 1));
+    if constexpr (JetNumber<X>) anywhere.slope.fill(Interval::everything());
+    visit(anywhere, 0);
+  }
+}
+
+/// d(u) . (p - r(u)) = 0 with d and r between those of the edge's ends.
+template <Number X, class Visit>
+void PlaneChain::places_on_edge(const Vec3<X>& p, std::size_t edge, Visit visit) const {
+  const Vec3d dr = points[edge + 1] - points[edge], dd = normal[edge + 1] - normal[edge];
+  const Vec3<X> w = p - constant<X>(points[edge]);
+  const X b = dot(w, constant<X>(dd)) - X(dot(normal[edge], dr)), c = dot(w, constant<X>(normal[edge]));
+  const double length = start[edge + 1] - start[edge];
+  roots_of_quadratic(-dot(dd, dr), b, c, [&](const X& u, int crossing) {
+    if (!(upper(u) >= -slack && lower(u) <= 1 + slack)) return;
+    visit(PlanePlace<X>{X(start[edge]) + X(length) * clamp(u, 0, 1), crossing});
+  });
+}
+
+template <Number X, class Visit>
+void PlaneChain::for_each_place(const Vec3<X>& p, Visit visit) const {
+  if (!(lower(height(p, 0)) > 0)) visit(X(0.0));
+  for (std::size_t k = 0; k + 1 < points.size(); ++k)
+    places_on_edge(p, k, [&](const PlanePlace<X>& place) { visit(place.at); });
+  if (!(upper(height(p, points.size() - 1)) < 0)) visit(X(length()));
+}
+
+/// Between two vertices whose planes the whole box is on different sides of, there is a place for each point; seen from
+/// far before, a point is ahead of the first plane, and behind the last seen from far behind.
+template <Number X, class Visit>
+void PlaneChain::for_each_group(const Vec3<X>& p, Visit visit) const {
+  std::vector<PlanePlace<X>> group;
+  int before = 1;
+  const auto settle = [&](int side) {
+    if (side == 0) return;
+    bool torn = side == before;
+    for (const PlanePlace<X>& place : group) torn = torn || place.crossing != side;
+    if (!group.empty()) visit(std::span<const PlanePlace<X>>(group), side != before, torn);
+    group.clear();
+    before = side;
+  };
+  const auto side_of = [](const X& h) { return lower(h) > 0 ? 1 : upper(h) < 0 ? -1 : 0; };
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const X h = height(p, k);
+    if (k == 0 && lower(h) <= 0) group.push_back({X(0.0), -1});
+    settle(side_of(h));
+    if (k + 1 < points.size()) places_on_edge(p, k, [&](const PlanePlace<X>& place) { group.push_back(place); });
+    else if (upper(h) >= 0) group.push_back({X(length()), -1});
+  }
+  settle(-1);
+}
+
+/// The largest of fields of which some may not be there.
+template <Number X>
+class EnclosureOfPlaces {
+ public:
+  /// Fields of the members of a group.
+  void add(std::span<const X> fields, bool certain, bool may_tear) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const X& f : fields) {
+      least = std::min(least, lower(f));
+      all_.push_back({f, may_tear});
+    }
+    if (certain) sure_ = std::max(sure_, least);
+  }
+  X largest() const {
+    X most(0.0);
+    bool first = true, torn = false;
+    for (const auto& [f, may_tear] : all_) {
+      if (upper(f) < sure_) continue;
+      most = first ? f : max(most, f);
+      first = false;
+      torn = torn || may_tear;
+    }
+    return bounded(most, torn);
+  }
+
+ private:
+  struct Field {
+    X value;
+    bool may_tear;
+  };
+  X bounded(X most, bool torn) const {
+    if constexpr (JetNumber<X>) {
+      most.value.lo = sure_;
+      if (torn) most.slope.fill(Interval::everything());
+    } else {
+      most.lo = sure_;
+    }
+    return most;
+  }
+
+  std::vector<Field> all_;
+  double sure_ = 0;
+};
+
+}  // namespace marrow

@@ -1,0 +1,113 @@
+// Precise contact: reference values of the bulges, their conditions, what contact guarantees.
+#include "field/tree/nodes/contact.h"
+
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/tree/node_laws.h"
+
+namespace marrow {
+namespace {
+
+using nlohmann::json;
+using test::field_of;
+
+const std::vector<Bulge> bulges{PlainBulge{},
+                                HeightBulge{},
+                                RippleBulge{},
+                                PlainBulge{.from = 0.1},
+                                HeightBulge{.from = 0.2, .at = 0.9, .height = 0.7},
+                                RippleBulge{.from = 0.5, .height = 0.1, .ripples = 4}};
+
+// Scaled to a surface at 1.
+TEST(Contact, ReferenceValues) {
+  const json data =
+      json::parse(std::ifstream(std::string(MARROW_SOURCE_DIR) + "/tests/field/reference/nary_blend_public.json"));
+  int checked = 0;
+  for (const json& e : data.at("older_papers")) {
+    if (e.at("what") != "pcm_bulge_corrected") continue;
+    ++checked;
+    const double iso = e.at("iso"), t = double(e.at("f_j")) / iso, c = double(e.at("c")) / iso,
+                 m = double(e.at("m")) / iso, h = double(e.at("h")) / iso;
+    const auto value = [&](const Bulge& b) { return iso * contact_term(b, t); };
+    EXPECT_NEAR(value(PlainBulge{c}), e.at("b1"), 1e-13) << e.at("id");
+    EXPECT_NEAR(value(HeightBulge{c, m, h}), e.at("b2"), 1e-13) << e.at("id");
+    EXPECT_NEAR(value(RippleBulge{c, h, e.at("ripples")}), e.at("b3"), 1e-12) << e.at("id");
+  }
+  EXPECT_EQ(checked, 40);
+}
+
+TEST(Contact, TermMeetsTheFourConditions) {
+  using test::Slope;
+  for (const Bulge& b : bulges) {
+    EXPECT_EQ(std::visit([](const auto& x) { return x.problem(); }, b), "");
+    const double from = std::visit([](const auto&x) { return x.from; }, b), near = 1e-9;
+    const auto at = [&](double t) { return contact_term(b, Slope::variable(t, 0)); };
+    EXPECT_EQ(at(from - near).value, 0);
+    EXPECT_NEAR(at(from + near).value, 0, 1e-12);
+    EXPECT_NEAR(at(from + near).slope[0], 0, 1e-6);
+    EXPECT_NEAR(at(1 - near).value, 0, 2e-9);
+    EXPECT_NEAR(at(1 - near).slope[0], -1, 1e-6);
+    EXPECT_EQ(at(1.5).value, -0.5);
+    double most = 0;
+    for (double t = 0; t < 1; t += 1e-4) {
+      EXPECT_GE(at(t).value, 0);
+      most = std::max(most, at(t).value);
+    }
+    EXPECT_LT(most, 1);
+    if (const auto* h = std::get_if<HeightBulge>(&b)) { EXPECT_NEAR(most, h->height, 1e-6); }
+    if (const auto* h = std::get_if<RippleBulge>(&b)) { EXPECT_NEAR(most, h->height, 1e-5); }
+  }
+}
+
+// Any number of bodies: deformed ones touch where the two largest fields are equal, and do not overlap.
+TEST(Contact, BodiesTouchExactly) {
+  test::Random random(5);
+  for (int i = 0; i < 2000; ++i) {
+    std::vector<double> f{random.between(0, 3), random.between(0, 3), random.between(0, 3), random.between(0, 3)};
+    const Contact whole{bulges[static_cast<std::size_t>(i) % bulges.size()], false};
+    const Contact one{whole.bulge, true};
+    int inside = 0;
+    double most = 0;
+    for (std::size_t k = 0; k < f.size(); ++k) {
+      std::vector<double> mine = f;
+      std::swap(mine[0], mine[k]);
+      const double deformed = field_of(one, mine);
+      inside += deformed > 1;
+      most = std::max(most, deformed);
+    }
+    const double largest = *std::max_element(f.begin(), f.end());
+    EXPECT_NEAR(field_of(whole, f), most, 1e-12);
+    EXPECT_EQ(inside >= 1, most > 1);
+    if (largest > 1) { EXPECT_EQ(inside, 1) << "seed 5 round " << i; }
+    f[1] = f[0] = 1 + random.between(0, 3);
+    f[2] = f[3] = 0.2;
+    EXPECT_NEAR(field_of(one, f), 1, 1e-12);
+  }
+}
+
+TEST(Contact, FarBodiesStayAsTheyAre) {
+  const Contact one{PlainBulge{0.4}, true};
+  EXPECT_EQ(field_of(one, {0.7, 0.4, 0.1}), 0.7);
+  EXPECT_GT(field_of(one, {0.7, 0.8, 0.1}), 0.7);
+  EXPECT_EQ(field_of(one, {0.7, 3, 0.1}), 0);
+}
+
+TEST(Contact, Laws) {
+  for (const Bulge& b : bulges) {
+    for (const bool first : {false, true}) test::expect_lawful_operator(Contact{b, first}, 4, 11, 3);
+    test::expect_child_level(Contact{b, false}, 4, 12);
+    test::expect_child_level(Contact{b, true}, 4, 13);
+  }
+}
+
+TEST(Contact, RefusesBulgesThatAreNotHighest) {
+  EXPECT_NE(Contact({HeightBulge{.from = 0.4, .at = 0.5, .height = 0.1}}).problem(2), "");
+  EXPECT_NE(Contact({HeightBulge{.from = 0.6, .at = 0.5, .height = 0.9}}).problem(2), "");
+  EXPECT_NE(Contact({RippleBulge{.from = 0.1, .height = 0.01, .ripples = 1}}).problem(2), "");
+  EXPECT_EQ(Contact{}.problem(2), "");
+}
+
+}  // namespace
+}  // namespace marrow
