@@ -27,7 +27,7 @@ void expect_lawful(const char* name, const Formula& formula, std::uint64_t most_
   Checks checks;
   for (int i = 0; i < 400 && !testing::Test::HasFailure(); ++i) {
     SCOPED_TRACE("round " + std::to_string(i));
-    expect_enclosures(field, random_box(region, random), 5, random, checks);
+    expect_enclosures(field, random_box(point_in(region, random), random), 5, random, checks);
     expect_ray_enclosures(field, point_in(region, random), 3, random, checks);
     const Vec3d p = point_in(region, random);
     expect_gradient(field, p, checks);

@@ -49,8 +49,8 @@ TYPED_TEST(EveryKind, EnclosuresHoldValuesAndSlopes) {
   Checks checks;
   this->for_trees([&](const auto& tree) {
     for (int i = 0; i < 4; ++i) {
-      expect_enclosures(tree, random_box(tree.region(), this->random_), 6, this->random_, checks);
-      expect_ray_enclosures(tree, point_in(tree.region(), this->random_), 3, this->random_, checks);
+      expect_enclosures(tree, random_box(tree.eventful_point(this->random_), this->random_), 6, this->random_, checks);
+      expect_ray_enclosures(tree, tree.eventful_point(this->random_), 3, this->random_, checks);
     }
     return checks.enclosures < wanted_checks();
   });
@@ -60,7 +60,7 @@ TYPED_TEST(EveryKind, DerivativesAreThoseOfDifferences) {
   Checks checks;
   this->for_trees([&](const auto& tree) {
     for (int i = 0; i < 8; ++i) {
-      const Vec3d p = point_in(tree.region(), this->random_);
+      const Vec3d p = tree.eventful_point(this->random_);
       expect_gradient(tree, p, checks);
       expect_hessian(tree, p, checks);
     }

@@ -45,9 +45,8 @@ inline Vec3d point_in(const Box3& box, Random& random) {
     p[i] = std::clamp(random.between(box.lower[i], box.upper[i]), box.lower[i], box.upper[i]);
   return p;
 }
-/// A box with a corner in the region, from a point to some units wide.
-inline Box3 random_box(const Box3& region, Random& random) {
-  const Vec3d corner = point_in(region, random);
+/// A box at a corner, from a point to some units wide.
+inline Box3 random_box(const Vec3d& corner, Random& random) {
   const double size = random.between(0, 1) < 0.1 ? 0 : pow(10.0, random.between(-9, 0.5));
   return {corner, corner + Vec3d{random.between(0, size), random.between(0, size), random.between(0, size)}};
 }

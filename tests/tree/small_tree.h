@@ -62,6 +62,18 @@ struct SmallTree {
     }
     return box;
   }
+  /// A point where the field changes, when a few trials find one: most of a region can be empty or deep inside.
+  Vec3d eventful_point(Random& random) const {
+    const Box3 box = region();
+    Vec3d p;
+    for (int trial = 0; trial < 6; ++trial) {
+      for (std::size_t i = 0; i < 3; ++i) p[i] = random.between(box.lower[i], box.upper[i]);
+      const Jet<double, 3> f = value(Vec3<Jet<double, 3>>{
+          Jet<double, 3>::variable(p.x, 0), Jet<double, 3>::variable(p.y, 1), Jet<double, 3>::variable(p.z, 2)});
+      if (f.slope != std::array<double, 3>{}) break;
+    }
+    return p;
+  }
 };
 
 }  // namespace marrow::test
