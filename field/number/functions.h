@@ -17,8 +17,11 @@ template <class X>
 concept JetNumber = requires {
   typename X::Scalar;
 };
+/// Numbers without derivatives. A type with the functions below may join them; tests add one of higher precision.
 template <class X>
-concept Number = std::same_as<X, double> || std::same_as<X, Interval> || JetNumber<X>;
+inline constexpr bool is_plain_number = std::same_as<X, double> || std::same_as<X, Interval>;
+template <class X>
+concept Number = is_plain_number<X> || JetNumber<X>;
 
 namespace number_detail {
 
@@ -84,15 +87,20 @@ X at_least(double x) {
 
 namespace number_detail {
 
-constexpr double within(double x, double, double) { return x; }
-inline Interval within(const Interval& x, double lo, double hi) { return clamped(x, {lo, hi}); }
-template <JetNumber X>
+template <Number X>
 X within(X x, double lo, double hi) {
-  if constexpr (is_enclosure<X>) x.value = clamped(x.value, {lo, hi});
+  if constexpr (std::same_as<X, Interval>) return clamped(x, {lo, hi});
+  else if constexpr (is_enclosure<X>) x.value = clamped(x.value, {lo, hi});
   return x;
 }
 
 }  // namespace number_detail
+
+/// x, which is known to lie in lo .. hi: enclosures lose what rounding or their arguments' independence added.
+template <Number X>
+X known_within(const X& x, double lo, double hi) {
+  return number_detail::within(x, lo, hi);
+}
 
 /// left(x) where x < knot and right(x) from there on. Both must agree at the knot, and each side sees only its part.
 template <Number X, class Left, class Right>
@@ -107,11 +115,12 @@ X piecewise(const X& x, double knot, Left left, Right right) {
 
 constexpr double min(double a, double b) { return b < a ? b : a; }
 constexpr double max(double a, double b) { return a < b ? b : a; }
+/// Where both are equal a double takes the slopes of a; an enclosure takes all.
 template <JetNumber X>
 X max(const X& a, const X& b) {
-  if (lower(a) >= upper(b)) return a;
-  if (lower(b) >= upper(a)) return b;
   if constexpr (is_enclosure<X>) {
+    if (lower(a) > upper(b)) return a;
+    if (lower(b) > upper(a)) return b;
     X r = hull(a, b);
     r.value = max(a.value, b.value);
     return r;
@@ -209,6 +218,12 @@ requires(!std::same_as<X, double>) X length(const Vec3<X>& v) {
     }
     return r;
   }
+}
+
+/// Of a vector in a plane.
+template <Number X>
+X length(const X& a, const X& b) {
+  return length(Vec3<X>{a, b, X(0.0)});
 }
 
 /// A constant vector as one of numbers.

@@ -36,12 +36,16 @@ constexpr double tiny = std::numeric_limits<double>::denorm_min();
 constexpr double most = std::numeric_limits<double>::max();
 constexpr double inf = std::numeric_limits<double>::infinity();
 
+// What overflowed is above the largest double; functions may overflow early: powers by their ulps, SLEEF's exp and pow
+// by a relative 2e-9.
+inline double overflowed(double ulps) { return ulps > 1 ? 0.5 * most : most; }
+
 inline double down(double x, double ulps = 1) {
-  if (x == inf) return most;
+  if (x == inf) return overflowed(ulps);
   return x - (std::fabs(x) * (ulps * ulp) + tiny);
 }
 inline double up(double x, double ulps = 1) {
-  if (x == -inf) return -most;
+  if (x == -inf) return -overflowed(ulps);
   return x + (std::fabs(x) * (ulps * ulp) + tiny);
 }
 inline Interval outward(double lo, double hi, double ulps = 1) {
@@ -50,6 +54,8 @@ inline Interval outward(double lo, double hi, double ulps = 1) {
 }
 // 0 * inf is 0 where an infinite end is a limit that is never taken.
 inline double product(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
+// And inf / inf, the other ends of which have the limits.
+inline double quotient(double a, double b) { return std::fabs(b) == inf ? 0 : a / b; }
 
 }  // namespace rounding
 
@@ -64,7 +70,8 @@ inline Interval operator*(const Interval& a, const Interval& b) {
 }
 inline Interval operator/(const Interval& a, const Interval& b) {
   if (b.contains(0)) return Interval::everything();
-  const double p = a.lo / b.lo, q = a.lo / b.hi, r = a.hi / b.lo, s = a.hi / b.hi;
+  using rounding::quotient;
+  const double p = quotient(a.lo, b.lo), q = quotient(a.lo, b.hi), r = quotient(a.hi, b.lo), s = quotient(a.hi, b.hi);
   return rounding::outward(std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s)));
 }
 inline Interval& operator+=(Interval& a, const Interval& b) { return a = a + b; }

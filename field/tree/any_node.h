@@ -6,10 +6,18 @@
 #include <variant>
 
 #include "field/tree/nodes/bend.h"
+#include "field/tree/nodes/box.h"
+#include "field/tree/nodes/cone.h"
 #include "field/tree/nodes/contact.h"
 #include "field/tree/nodes/convolution_segment.h"
 #include "field/tree/nodes/crisp.h"
+#include "field/tree/nodes/cylinder.h"
+#include "field/tree/nodes/disc.h"
+#include "field/tree/nodes/ellipsoid.h"
+#include "field/tree/nodes/line.h"
 #include "field/tree/nodes/local_convolution.h"
+#include "field/tree/nodes/plane.h"
+#include "field/tree/nodes/polygon.h"
 #include "field/tree/nodes/restricted_blend.h"
 #include "field/tree/nodes/ricci.h"
 #include "field/tree/nodes/sharp_csg.h"
@@ -18,6 +26,7 @@
 #include "field/tree/nodes/sphere.h"
 #include "field/tree/nodes/sum.h"
 #include "field/tree/nodes/taper.h"
+#include "field/tree/nodes/torus.h"
 #include "field/tree/nodes/twist.h"
 #include "field/tree/nodes/weighted_blend.h"
 
@@ -25,8 +34,9 @@ namespace marrow {
 
 /// Documentation lists them in this order.
 using AnyNode = std::variant<                        //
-    Sphere,                                          // primitives
-    ConvolutionSegment, LocalConvolution,            //
+    Sphere, Ellipsoid, Cylinder, Cone, Box, Torus,   // solids with a bounded field
+    Plane, Disc, LineSolid, Polygon,                 //
+    ConvolutionSegment, LocalConvolution,            // integrals of older papers
     Intersection, Difference,                        // set operations
     SoftUnion, SoftIntersection, SoftDifference,     //
     SharpUnion, SharpIntersection, SharpDifference,  //

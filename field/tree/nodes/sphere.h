@@ -1,11 +1,12 @@
 // A ball.
 #pragma once
 
-#include "field/math/box3.h"
+#include "field/tree/extent.h"
 #include "field/tree/potential.h"
 
 namespace marrow {
 
+/// The distance is exact.
 struct Sphere {
   static constexpr NodeInfo info{"sphere", "A ball with a bounded field."};
   Vec3d center{};
@@ -17,7 +18,7 @@ struct Sphere {
     key("radius", &Sphere::radius, form::positive, "of its surface");
     key("potential", &Sphere::potential, form::OneOf{}, "how the field falls");
   }
-  Box3 support() const { return Box3{center, center}.padded(radius + range_of(potential)); }
+  Box3 support() const { return reached({center, center}, radius + range_of(potential)); }
 
   template <Number X>
   X value(const Vec3<X>& p) const {
