@@ -75,7 +75,7 @@ WeightedSum weighted_sum(const BlendField& blend, const Vec3d& p) {
 }
 
 Correction correction_with(const BlendField& blend, double alpha) {
-  return Correction(blend.degree, alpha, blend.cavity, blend.projection);
+  return Correction({blend.kernel, blend.degree, blend.kernel_shape}, alpha, blend.cavity, blend.projection);
 }
 
 }  // namespace

@@ -33,8 +33,7 @@ struct PrimitiveList {
 
 /// Polylines and skeleton graphs are flattened to segments, an isolated root of a graph to a point.
 /// A point has the same field in both skeleton models. Every radius is > 0 and every segment has length > 0.
-/// Under another kernel than the inverse one there are only points and segments, and alpha is pi/2: the reference curve
-/// of those kernels returns to 0 and cannot be inverted (field-maths 0, line 10).
+/// Under another kernel than the inverse one there are only points and segments, and alpha is not negative.
 struct BlendField {
   int degree = 4;
   KernelFamily kernel = KernelFamily::Inverse;

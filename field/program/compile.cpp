@@ -29,14 +29,15 @@ struct Placement {
 class ContactAngles {
  public:
   double of(const Blend& blend) {
-    const Key key{blend.kernel.degree, blend.cavity, blend.projection};
+    const Kernel& k = blend.kernel;
+    const Key key{k.family, k.degree, k.shape, blend.cavity, blend.projection};
     const auto known = angles_.find(key);
     if (known != angles_.end()) return known->second;
-    return angles_[key] = std::apply(contact_alpha, key);
+    return angles_[key] = contact_alpha(k, blend.cavity, blend.projection);
   }
 
  private:
-  using Key = std::tuple<int, bool, Projection>;
+  using Key = std::tuple<KernelFamily, int, double, bool, Projection>;
   std::map<Key, double> angles_;
 };
 
@@ -194,9 +195,32 @@ class Compiler {
     return field;
   }
 
+  void warn(FieldNodeId node, std::string message, std::string hint) {
+    if (reported_[node.index()]) return;
+    reported_[node.index()] = true;
+    warnings_.push_back({.where = description_[node].where,
+                         .message = std::move(message),
+                         .hint = std::move(hint),
+                         .severity = Severity::Warning});
+  }
+
+  // What a kernel that is finite on its skeletons cannot keep.
+  void warn_of_bounded_kernel(const Blend& blend, const BlendField& field, FieldNodeId node) {
+    const Correction correction = correction_of(field);
+    if (!correction.bounded() || std::holds_alternative<AlphaSum>(blend.alpha)) return;
+    const std::string narrower =
+        blend.kernel.family == KernelFamily::Cauchy ? "a larger `scale`" : "a smaller `support`";
+    if (!correction.bounded()->solid_alone())
+      warn(node, "skeletons of this kernel are hollow with this alpha", "use " + narrower + ", or a larger alpha");
+    else if (std::holds_alternative<AlphaContact>(blend.alpha) &&
+             !contact_is_exact(blend.kernel, blend.cavity, blend.projection))
+      warn(node, "skeletons of this kernel join before they touch, whatever alpha", "use " + narrower);
+  }
+
   void add_part(const Blend& blend, const Placement& here, std::optional<SkeletonModel> model = {}) {
     PlacedBlend part;
     part.blend = empty_field(blend);
+    warn_of_bounded_kernel(blend, part.blend, here.node);
     const bool baked = here.from_node.similarity().has_value();
     if (!baked) {
       part.world_from_local = here.from_node;
@@ -251,12 +275,9 @@ class Compiler {
     if (field.alpha_per_skeleton && field.projection == Projection::Exact && primitive.alpha && *primitive.alpha < 0)
       report(child.node, "an alpha below 0 with the exact projection",
              "below alpha = 0 only `projection: paper` is defined");
-    if (flatten.without_length() == 0 || reported_[child.node.index()]) return;
-    reported_[child.node.index()] = true;
-    warnings_.push_back({.where = description_[child.node].where,
-                         .message = std::to_string(flatten.without_length()) + " segments have no length",
-                         .hint = "a segment without length adds nothing; use a point for a ball",
-                         .severity = Severity::Warning});
+    if (flatten.without_length() > 0)
+      warn(child.node, std::to_string(flatten.without_length()) + " segments have no length",
+           "a segment without length adds nothing; use a point for a ball");
   }
 
   const FieldDescription& description_;

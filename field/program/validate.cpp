@@ -157,11 +157,10 @@ void check(const Blend& blend, Findings& findings) {
     findings.add(fmt::format("kernel degree {} is out of range", degree),
                  fmt::format("the degree is a whole number from {} to {}", min_kernel_degree, max_kernel_degree));
   check_shape(blend.kernel, findings);
-  if (blend.kernel.family != KernelFamily::Inverse && !std::holds_alternative<AlphaSum>(blend.alpha))
-    findings.add("a kernel that blends only as the plain sum",
-                 "write `alpha: sum`; topology control needs the kernel `inverse`");
   if (const double* alpha = std::get_if<double>(&blend.alpha)) {
     check_alpha(*alpha, findings);
+    if (*alpha >= smallest_alpha && *alpha < 0 && blend.kernel.family != KernelFamily::Inverse)
+      findings.add(fmt::format("alpha {} with this kernel", *alpha), "below alpha = 0 only `inverse` is defined");
     if (*alpha >= smallest_alpha && *alpha < 0 && blend.projection == Projection::Exact)
       findings.add(fmt::format("alpha {} with the exact projection", *alpha),
                    "below alpha = 0 only `projection: paper` is defined");
