@@ -1,6 +1,9 @@
 // Walks a description from its root with a stack of placements; no recursion, so no depth limit.
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -11,6 +14,8 @@
 #include "field/base/overloaded.h"
 #include "field/blend/contact.h"
 #include "field/program/field_program.h"
+#include "field/program/node_angles.h"
+#include "field/program/ramped_field.h"
 #include "field/program/validate.h"
 #include "field/skeleton/subdivision_curve.h"
 
@@ -35,8 +40,17 @@ class ContactAngles {
     if (known != angles_.end()) return known->second;
     return angles_[key] = contact_alpha(k, blend.cavity, blend.projection);
   }
+  std::shared_ptr<const LocalContact> local(const Blend& blend, const AlphaLocalContact& rule) {
+    const Kernel& k = blend.kernel;
+    auto& known = local_[{k.family, k.degree, k.shape, blend.cavity, blend.projection, rule.radii, rule.density}];
+    if (!known)
+      known = std::make_shared<const LocalContact>(k, blend.cavity, blend.projection, rule.radii, rule.density);
+    return known;
+  }
 
  private:
+  std::map<std::tuple<KernelFamily, int, double, bool, Projection, bool, bool>, std::shared_ptr<const LocalContact>>
+      local_;
   using Key = std::tuple<KernelFamily, int, double, bool, Projection>;
   std::map<Key, double> angles_;
 };
@@ -51,27 +65,29 @@ Blend blend_of(FieldNodeId primitive) {
 // Adds the skeleton of one primitive to a blend, mapped by a similarity.
 class Flattener {
  public:
-  Flattener(BlendField& field, const Affine& map, double scale, SkeletonModel model, const Primitive& primitive)
+  Flattener(BlendField& field, const Affine& map, double scale, SkeletonModel model, const Primitive& primitive,
+            const Alpha& alpha, std::uint32_t strand)
       : field_(field),
         map_(map),
         scale_(scale),
         model_(primitive.model.value_or(model)),
         material_(primitive.material),
-        alpha_(primitive.alpha.value_or(field.alpha)) {}
+        angles_(primitive, alpha, field.alpha),
+        strand_(strand) {}
 
-  void operator()(const PointSkeleton& s) { add(field_.points, PointSkeleton{map_.point(s.at), s.radius * scale_}); }
+  void operator()(const PointSkeleton& s) { add_point(s, 0); }
 
   // A segment of no length has no integral; its scaled distance is that of its larger end.
   void operator()(const SegmentSkeleton& s) {
     if (model_ == SkeletonModel::Distance && !(length(s.to - s.from) > 0))
-      (*this)(PointSkeleton{s.from, std::max(s.radius_from, s.radius_to)});
-    else add_segment(s.from, s.to, s.radius_from, s.radius_to);
+      add_point({s.from, std::max(s.radius_from, s.radius_to)}, 0);
+    else add_segment(s.from, s.to, s.radius_from, s.radius_to, 0, 1);
   }
 
   void operator()(const PolylineSkeleton& s) {
     segments().skeletons.reserve(segments().size() + s.points.size());
     for (std::size_t i = 1; i < s.points.size(); ++i)
-      add_segment(s.points[i - 1], s.points[i], s.radii[i - 1], s.radii[i]);
+      add_segment(s.points[i - 1], s.points[i], s.radii[i - 1], s.radii[i], i - 1, i);
   }
 
   void operator()(const CurveSkeleton& s) { (*this)(subdivide(s)); }
@@ -86,9 +102,9 @@ class Flattener {
     for (std::size_t i = 0; i < count; ++i) {
       if (s.parents[i] != SkeletonGraph::no_parent) {
         const auto parent = static_cast<std::size_t>(s.parents[i]);
-        add_segment(s.positions[parent], s.positions[i], s.radii[parent], s.radii[i]);
+        add_segment(s.positions[parent], s.positions[i], s.radii[parent], s.radii[i], parent, i);
       } else if (!has_child[i]) {
-        (*this)(PointSkeleton{s.positions[i], s.radii[i]});
+        add_point({s.positions[i], s.radii[i]}, i);
       }
     }
   }
@@ -97,7 +113,7 @@ class Flattener {
     TriangleSkeleton mapped = s;
     for (Vec3d& vertex : mapped.vertices) vertex = map_.point(vertex);
     for (double& radius : mapped.radii) radius *= scale_;
-    add(field_.triangles, mapped);
+    add(field_.triangles, mapped, angles_.mean());
   }
 
   void operator()(const ArcSkeleton& s) {
@@ -108,7 +124,7 @@ class Flattener {
     mapped.major *= scale_;
     mapped.radius_from *= scale_;
     mapped.radius_to *= scale_;
-    add(field_.arcs, mapped);
+    add(field_.arcs, mapped, angles_.mean());
   }
 
   SkeletonModel model() const { return model_; }
@@ -116,17 +132,29 @@ class Flattener {
 
  private:
   template <class Skeleton>
-  void add(PrimitiveList<Skeleton>& list, const Skeleton& mapped) {
+  void add(PrimitiveList<Skeleton>& list, const Skeleton& mapped, double alpha) {
     list.add(mapped, material_);
-    if (field_.alpha_per_skeleton) list.alphas.push_back(alpha_);
+    if (field_.alpha_per_skeleton) list.alphas.push_back(alpha);
+    if (!field_.direction_bounds.empty()) list.strands.push_back(strand_);
+  }
+  void add_point(const PointSkeleton& s, std::size_t node) {
+    add(field_.points, PointSkeleton{map_.point(s.at), s.radius * scale_}, angles_.of(node));
   }
   PrimitiveList<SegmentSkeleton>& segments() {
     return model_ == SkeletonModel::Distance ? field_.distance_segments : field_.segments;
   }
-  void add_segment(const Vec3d& from, const Vec3d& to, double radius_from, double radius_to) {
+  void add_segment(const Vec3d& from, const Vec3d& to, double radius_from, double radius_to, std::size_t first,
+                   std::size_t second) {
     const SegmentSkeleton mapped{map_.point(from), map_.point(to), radius_from * scale_, radius_to * scale_};
-    if (length(mapped.to - mapped.from) > 0) add(segments(), mapped);
-    else ++without_length_;
+    if (!(length(mapped.to - mapped.from) > 0)) return void(++without_length_);
+    const double begin = angles_.of(first), end = angles_.of(second);
+    if (model_ == SkeletonModel::Distance) {
+      add(field_.distance_segments, mapped, (begin + end) / 2);
+      if (field_.direction_bounds.empty()) field_.distance_segments.strands.push_back(strand_);
+      return;
+    }
+    add(field_.segments, mapped, begin);
+    if (field_.alpha_per_skeleton) field_.segments.alphas_to.push_back(end);
   }
 
   BlendField& field_;
@@ -134,7 +162,8 @@ class Flattener {
   double scale_;
   SkeletonModel model_;
   MaterialId material_;
-  double alpha_;
+  NodeAngles angles_;
+  std::uint32_t strand_;
   std::size_t without_length_ = 0;
 };
 
@@ -147,7 +176,12 @@ class Compiler {
 
   Result<FieldProgram> run() {
     if (Diagnostics wrong = validate(description_); !wrong.empty()) return wrong;
-    std::vector<Placement> open{{description_.root, Affine{}}};
+    return run_from({description_.root, Affine{}});
+  }
+
+ private:
+  Result<FieldProgram> run_from(const Placement& root) {
+    std::vector<Placement> open{root};
     while (!open.empty() && placements_ <= max_placements_) {
       const Placement here = open.back();
       open.pop_back();
@@ -161,13 +195,11 @@ class Compiler {
                  description_[here.node].what);
     }
     if (placements_ > max_placements_)
-      report(description_.root, "the field holds over a million copies of its own nodes",
-             "place fewer copies inside copies");
+      report(root.node, "the field holds over a million copies of its own nodes", "place fewer copies inside copies");
     if (!errors_.empty()) return errors_;
     return FieldProgram(std::move(parts_), std::move(warnings_));
   }
 
- private:
   // The last child first, so that the stack gives them in their order.
   static void push_children(const std::vector<FieldNodeId>& children, const Affine& map, std::vector<Placement>& open) {
     for (auto child = children.rbegin(); child != children.rend(); ++child) open.push_back({*child, map});
@@ -184,12 +216,14 @@ class Compiler {
     field.degree = blend.kernel.degree;
     field.kernel = blend.kernel.family;
     field.kernel_shape = blend.kernel.shape;
-    field.alpha =
-        std::visit(Overloaded{[&](AlphaContact) { return contact_.of(blend); },
-                              [&](AlphaPerSkeleton) { return contact_.of(blend); },
-                              [](AlphaSum) { return std::numbers::pi / 2; }, [](double radians) { return radians; }},
-                   blend.alpha);
-    field.alpha_per_skeleton = std::holds_alternative<AlphaPerSkeleton>(blend.alpha);
+    field.alpha = std::visit(
+        Overloaded{[](AlphaSum) { return std::numbers::pi / 2; }, [](double radians) { return radians; },
+                   [](const AlphaDirection& d) { return d.most; }, [&](const auto&) { return contact_.of(blend); }},
+        blend.alpha);
+    field.alpha_per_skeleton =
+        std::holds_alternative<AlphaPerSkeleton>(blend.alpha) || std::holds_alternative<AlphaAttribute>(blend.alpha);
+    if (const auto* rule = std::get_if<AlphaLocalContact>(&blend.alpha))
+      field.local_contact = contact_.local(blend, *rule);
     field.cavity = blend.cavity;
     field.projection = blend.projection;
     return field;
@@ -227,19 +261,37 @@ class Compiler {
       part.local_from_world = here.from_node.inverse();
     }
     const Affine to_blend = baked ? here.from_node : Affine{};
+    if (const auto* rule = std::get_if<AlphaFromField>(&blend.alpha))
+      part.blend.alpha_source = source_of(*rule, {rule->field, to_blend});
+    strand_ = 0;
     std::vector<Placement> open;
     push_children(blend.of, to_blend, open);
     while (!open.empty() && placements_ <= max_placements_) {
       const Placement child = open.back();
       open.pop_back();
       ++placements_;
-      add_child(child, model.value_or(blend.model), part.blend, open);
+      add_child(child, blend, model.value_or(blend.model), part.blend, open);
     }
     parts_.push_back(std::move(part));
   }
 
-  void add_child(const Placement& child, SkeletonModel model, BlendField& field, std::vector<Placement>& open) {
-    std::visit(Overloaded{[&](const Primitive& p) { add_primitive(p, child, model, field); },
+  // The field of angles of a blend, which is placed with it.
+  std::shared_ptr<const AlphaSource> source_of(const AlphaFromField& rule, const Placement& place) {
+    if (is_source_) {
+      report(place.node, "an alpha from a field, within the field of another alpha", "one field may steer a blend");
+      return nullptr;
+    }
+    Compiler inner(description_);
+    inner.is_source_ = true;
+    auto program = inner.run_from(place);
+    if (program) return std::make_shared<RampedField>(*std::move(program), rule.ramp);
+    errors_.insert(errors_.end(), program.why().begin(), program.why().end());
+    return nullptr;
+  }
+
+  void add_child(const Placement& child, const Blend& blend, SkeletonModel model, BlendField& field,
+                 std::vector<Placement>& open) {
+    std::visit(Overloaded{[&](const Primitive& p) { add_primitive(p, child, blend, model, field); },
                           [&](const Transform& t) {
                             if (!t.parent_from_child.similarity())
                               return report(child.node, "a transform inside a blend that changes shape",
@@ -257,10 +309,15 @@ class Compiler {
            "a blend takes skeletons (point, segment, polyline, skeleton), or transforms of them");
   }
 
-  void add_primitive(const Primitive& primitive, const Placement& child, SkeletonModel model, BlendField& field) {
+  void add_primitive(const Primitive& primitive, const Placement& child, const Blend& blend, SkeletonModel model,
+                     BlendField& field) {
     // Each map on the way is a similarity, so that any column has the scale of all together.
     const double scale = length(child.from_node.columns[0]);
-    Flattener flatten(field, child.from_node, scale, model, primitive);
+    if (const auto* rule = std::get_if<AlphaDirection>(&blend.alpha)) {
+      const auto [least, most] = primitive.alpha_bounds.value_or(std::array{rule->least, rule->most});
+      field.direction_bounds.push_back({least, most});
+    }
+    Flattener flatten(field, child.from_node, scale, model, primitive, blend.alpha, strand_++);
     std::visit(flatten, primitive.skeleton);
     const bool is_integral_only = std::holds_alternative<TriangleSkeleton>(primitive.skeleton) ||
                                   std::holds_alternative<ArcSkeleton>(primitive.skeleton);
@@ -272,9 +329,12 @@ class Compiler {
     if (is_inverse_only && field.kernel != KernelFamily::Inverse)
       report(child.node, "this skeleton is not there for the kernels cauchy and compact",
              "they take points and, with `model: integral`, segments, polylines, curves and skeletons");
-    if (field.alpha_per_skeleton && field.projection == Projection::Exact && primitive.alpha && *primitive.alpha < 0)
-      report(child.node, "an alpha below 0 with the exact projection",
-             "below alpha = 0 only `projection: paper` is defined");
+    const bool is_any_angle_defined = field.projection == Projection::Paper && field.kernel == KernelFamily::Inverse;
+    const double least = primitive.alpha_bounds ? std::min((*primitive.alpha_bounds)[0], (*primitive.alpha_bounds)[1])
+                                                : primitive.alpha.value_or(0);
+    if (field.alpha_varies() && least < 0 && !is_any_angle_defined)
+      report(child.node, "an alpha below 0 with this kernel or projection",
+             "below alpha = 0 only the kernel `inverse` with `projection: paper` is defined");
     if (flatten.without_length() > 0)
       warn(child.node, std::to_string(flatten.without_length()) + " segments have no length",
            "a segment without length adds nothing; use a point for a ball");
@@ -286,6 +346,8 @@ class Compiler {
   Diagnostics errors_, warnings_;
   ContactAngles contact_;
   std::size_t placements_ = 0, max_placements_;
+  std::uint32_t strand_ = 0;  // of the blend in hand
+  bool is_source_ = false;    // a field of angles, within another compilation
 };
 
 }  // namespace
