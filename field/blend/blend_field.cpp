@@ -11,9 +11,17 @@ namespace marrow {
 namespace {
 
 bool has_materials(const BlendField& blend) {
-  return !blend.points.materials.empty() || !blend.segments.materials.empty() ||
-         !blend.distance_segments.materials.empty() || !blend.triangles.materials.empty() ||
-         !blend.arcs.materials.empty();
+  bool any = false;
+  blend.for_each_list([&](const auto& list) { any = any || !list.materials.empty(); });
+  return any;
+}
+
+// The whole circle of an arc.
+void include_circle(const ArcSkeleton& s, Box3& box) {
+  Vec3d reach;
+  for (std::size_t k = 0; k < 3; ++k) reach[k] = s.major * std::sqrt(s.axis1[k] * s.axis1[k] + s.axis2[k] * s.axis2[k]);
+  box.include(s.center - reach);
+  box.include(s.center + reach);
 }
 
 Correction correction_with(const BlendField& blend, double alpha) {
@@ -68,7 +76,9 @@ std::string untraceable_part(const BlendField& blend) {
   };
   if (blend.kernel == KernelFamily::Cauchy) return evaluated_only("`kernel: {cauchy: …}`");
   if (blend.kernel == KernelFamily::Compact) return evaluated_only("`kernel: {compact: …}`");
-  if (!blend.distance_segments.empty()) return evaluated_only("`model: distance`");
+  if (!blend.distance_segments.empty() || !blend.distance_triangles.empty() || !blend.distance_arcs.empty())
+    return evaluated_only("`model: distance`");
+  if (!blend.cani_hornus_segments.empty()) return evaluated_only("`model: cani_hornus`");
   if (!blend.triangles.empty()) return evaluated_only("`triangle`");
   if (!blend.arcs.empty()) return evaluated_only("`circle` or `arc`");
   if (blend.alpha_per_skeleton) return evaluated_only("`alpha: per_skeleton` or `alpha: {attribute: …}`");
@@ -92,31 +102,28 @@ MaterialId strongest_material(const BlendField& blend, const Vec3d& p) {
 Box3 skeleton_bounds(const BlendField& blend) {
   Box3 box;
   for (const auto& s : blend.points.skeletons) box.include(s.at);
-  for (const auto* list : {&blend.segments, &blend.distance_segments})
+  for (const auto* list : {&blend.segments, &blend.distance_segments, &blend.cani_hornus_segments})
     for (const auto& s : list->skeletons) {
       box.include(s.from);
       box.include(s.to);
     }
-  for (const auto& s : blend.triangles.skeletons)
-    for (const Vec3d& vertex : s.vertices) box.include(vertex);
-  for (const auto& s : blend.arcs.skeletons) {
-    // of the whole circle
-    Vec3d reach;
-    for (std::size_t k = 0; k < 3; ++k)
-      reach[k] = s.major * std::sqrt(s.axis1[k] * s.axis1[k] + s.axis2[k] * s.axis2[k]);
-    box.include(s.center - reach);
-    box.include(s.center + reach);
-  }
+  for (const auto* list : {&blend.triangles, &blend.distance_triangles})
+    for (const auto& s : list->skeletons)
+      for (const Vec3d& vertex : s.vertices) box.include(vertex);
+  for (const auto* list : {&blend.arcs, &blend.distance_arcs})
+    for (const auto& s : list->skeletons) include_circle(s, box);
   return box;
 }
 
 double largest_radius(const BlendField& blend) {
   double largest = 0;
   for (const auto& s : blend.points.skeletons) largest = std::max(largest, s.radius);
-  for (const auto* list : {&blend.segments, &blend.distance_segments})
+  for (const auto* list : {&blend.segments, &blend.distance_segments, &blend.cani_hornus_segments})
     for (const auto& s : list->skeletons) largest = std::max({largest, s.radius_from, s.radius_to});
-  for (const auto& s : blend.triangles.skeletons) largest = std::max({largest, s.radii[0], s.radii[1], s.radii[2]});
-  for (const auto& s : blend.arcs.skeletons) largest = std::max({largest, s.radius_from, s.radius_to});
+  for (const auto* list : {&blend.triangles, &blend.distance_triangles})
+    for (const auto& s : list->skeletons) largest = std::max({largest, s.radii[0], s.radii[1], s.radii[2]});
+  for (const auto* list : {&blend.arcs, &blend.distance_arcs})
+    for (const auto& s : list->skeletons) largest = std::max({largest, s.radius_from, s.radius_to});
   return largest;
 }
 

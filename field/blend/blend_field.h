@@ -44,7 +44,8 @@ struct PrimitiveList {
 /// Polylines and skeleton graphs are flattened to segments, an isolated root of a graph to a point.
 /// A point has the same field in both skeleton models. Every radius is > 0 and every segment has length > 0.
 /// Distance segments of one strand are one primitive: the largest of them counts.
-/// Under another kernel than the inverse one there are only points and segments, and alpha is not negative.
+/// Under another kernel than the inverse one alpha is not negative. Segments of Cani and Hornus stand only under the
+/// inverse kernel of degree 3.
 struct BlendField {
   int degree = 4;
   KernelFamily kernel = KernelFamily::Inverse;
@@ -60,15 +61,29 @@ struct BlendField {
   PrimitiveList<PointSkeleton> points;
   PrimitiveList<SegmentSkeleton> segments;           ///< integral (SCALIS) model
   PrimitiveList<SegmentSkeleton> distance_segments;  ///< distance model
-  PrimitiveList<TriangleSkeleton> triangles;
-  PrimitiveList<ArcSkeleton> arcs;  ///< and circles
+  PrimitiveList<SegmentSkeleton> cani_hornus_segments;
+  PrimitiveList<TriangleSkeleton> triangles, distance_triangles;
+  PrimitiveList<ArcSkeleton> arcs, distance_arcs;  ///< and circles
 
   /// At most one of the rules is there.
   bool alpha_varies() const {
     return alpha_per_skeleton || !direction_bounds.empty() || local_contact != nullptr || alpha_source != nullptr;
   }
+  template <class Visit>
+  void for_each_list(const Visit& visit) const {
+    visit(points);
+    visit(segments);
+    visit(distance_segments);
+    visit(cani_hornus_segments);
+    visit(triangles);
+    visit(distance_triangles);
+    visit(arcs);
+    visit(distance_arcs);
+  }
   std::size_t size() const {
-    return points.size() + segments.size() + distance_segments.size() + triangles.size() + arcs.size();
+    std::size_t count = 0;
+    for_each_list([&](const auto& list) { count += list.size(); });
+    return count;
   }
 };
 

@@ -34,18 +34,26 @@ void for_each_primitive(const BlendField& blend, const Vec3d& p, const Visit& vi
   const auto all = [&](const auto& list, const auto& field) {
     for (std::size_t i = 0; i < list.size(); ++i) visit(field(list.skeletons[i]), list, i);
   };
-  if (blend.kernel != KernelFamily::Inverse) {
-    const Kernel kernel{blend.kernel, n, blend.kernel_shape};
+  const Kernel kernel{blend.kernel, n, blend.kernel_shape};
+  if (blend.kernel == KernelFamily::Inverse) {
+    all(blend.points, [&](const PointSkeleton& s) { return point_field<Order>(s, p, n); });
+    all(blend.segments, [&](const SegmentSkeleton& s) { return segment_field<Order>(s, p, n); });
+    visit_strands(
+        blend.distance_segments, [&](const SegmentSkeleton& s) { return distance_segment_field<Order>(s, p, n); },
+        visit);
+    all(blend.cani_hornus_segments, [&](const SegmentSkeleton& s) { return cani_hornus_field<Order>(s, p); });
+    all(blend.triangles, [&](const TriangleSkeleton& s) { return triangle_field<Order>(s, p, n); });
+    all(blend.arcs, [&](const ArcSkeleton& s) { return arc_field<Order>(s, p, n); });
+  } else {
     all(blend.points, [&](const PointSkeleton& s) { return point_field<Order>(s, p, kernel); });
     all(blend.segments, [&](const SegmentSkeleton& s) { return segment_field<Order>(s, p, kernel); });
-    return;
+    visit_strands(
+        blend.distance_segments, [&](const SegmentSkeleton& s) { return distance_field<Order>(s, p, kernel); }, visit);
+    all(blend.triangles, [&](const TriangleSkeleton& s) { return triangle_field<Order>(s, p, kernel); });
+    all(blend.arcs, [&](const ArcSkeleton& s) { return arc_field<Order>(s, p, kernel); });
   }
-  all(blend.points, [&](const PointSkeleton& s) { return point_field<Order>(s, p, n); });
-  all(blend.segments, [&](const SegmentSkeleton& s) { return segment_field<Order>(s, p, n); });
-  visit_strands(
-      blend.distance_segments, [&](const SegmentSkeleton& s) { return distance_segment_field<Order>(s, p, n); }, visit);
-  all(blend.triangles, [&](const TriangleSkeleton& s) { return triangle_field<Order>(s, p, n); });
-  all(blend.arcs, [&](const ArcSkeleton& s) { return arc_field<Order>(s, p, n); });
+  all(blend.distance_triangles, [&](const TriangleSkeleton& s) { return distance_field<Order>(s, p, kernel); });
+  all(blend.distance_arcs, [&](const ArcSkeleton& s) { return distance_field<Order>(s, p, kernel); });
 }
 
 }  // namespace marrow

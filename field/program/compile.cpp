@@ -113,7 +113,7 @@ class Flattener {
     TriangleSkeleton mapped = s;
     for (Vec3d& vertex : mapped.vertices) vertex = map_.point(vertex);
     for (double& radius : mapped.radii) radius *= scale_;
-    add(field_.triangles, mapped, angles_.mean());
+    add(model_ == SkeletonModel::Distance ? field_.distance_triangles : field_.triangles, mapped, angles_.mean());
   }
 
   void operator()(const ArcSkeleton& s) {
@@ -124,7 +124,7 @@ class Flattener {
     mapped.major *= scale_;
     mapped.radius_from *= scale_;
     mapped.radius_to *= scale_;
-    add(field_.arcs, mapped, angles_.mean());
+    add(model_ == SkeletonModel::Distance ? field_.distance_arcs : field_.arcs, mapped, angles_.mean());
   }
 
   SkeletonModel model() const { return model_; }
@@ -141,16 +141,17 @@ class Flattener {
     add(field_.points, PointSkeleton{map_.point(s.at), s.radius * scale_}, angles_.of(node));
   }
   PrimitiveList<SegmentSkeleton>& segments() {
-    return model_ == SkeletonModel::Distance ? field_.distance_segments : field_.segments;
+    if (model_ == SkeletonModel::Integral) return field_.segments;
+    return model_ == SkeletonModel::Distance ? field_.distance_segments : field_.cani_hornus_segments;
   }
   void add_segment(const Vec3d& from, const Vec3d& to, double radius_from, double radius_to, std::size_t first,
                    std::size_t second) {
     const SegmentSkeleton mapped{map_.point(from), map_.point(to), radius_from * scale_, radius_to * scale_};
     if (!(length(mapped.to - mapped.from) > 0)) return void(++without_length_);
     const double begin = angles_.of(first), end = angles_.of(second);
-    if (model_ == SkeletonModel::Distance) {
-      add(field_.distance_segments, mapped, (begin + end) / 2);
-      if (field_.direction_bounds.empty()) field_.distance_segments.strands.push_back(strand_);
+    if (model_ != SkeletonModel::Integral) {
+      add(segments(), mapped, (begin + end) / 2);
+      if (model_ == SkeletonModel::Distance && field_.direction_bounds.empty()) segments().strands.push_back(strand_);
       return;
     }
     add(field_.segments, mapped, begin);
@@ -319,16 +320,14 @@ class Compiler {
     }
     Flattener flatten(field, child.from_node, scale, model, primitive, blend.alpha, strand_++);
     std::visit(flatten, primitive.skeleton);
-    const bool is_integral_only = std::holds_alternative<TriangleSkeleton>(primitive.skeleton) ||
-                                  std::holds_alternative<ArcSkeleton>(primitive.skeleton);
-    if (is_integral_only && flatten.model() == SkeletonModel::Distance)
-      report(child.node, "`model: distance` is not there for triangles, circles and arcs",
-             "say `model: integral` here");
-    const bool is_inverse_only = is_integral_only || (flatten.model() == SkeletonModel::Distance &&
-                                                      !std::holds_alternative<PointSkeleton>(primitive.skeleton));
-    if (is_inverse_only && field.kernel != KernelFamily::Inverse)
-      report(child.node, "this skeleton is not there for the kernels cauchy and compact",
-             "they take points and, with `model: integral`, segments, polylines, curves and skeletons");
+    if (flatten.model() == SkeletonModel::CaniHornus) {
+      if (std::holds_alternative<TriangleSkeleton>(primitive.skeleton) ||
+          std::holds_alternative<ArcSkeleton>(primitive.skeleton))
+        report(child.node, "`model: cani_hornus` is not there for triangles, circles and arcs",
+               "say `model: integral` here");
+      else if (field.kernel != KernelFamily::Inverse || field.degree != 3)
+        report(child.node, "`model: cani_hornus` is an integral of 1/r^3", "give the blend `kernel: {inverse: 3}`");
+    }
     const bool is_any_angle_defined = field.projection == Projection::Paper && field.kernel == KernelFamily::Inverse;
     const double least = primitive.alpha_bounds ? std::min((*primitive.alpha_bounds)[0], (*primitive.alpha_bounds)[1])
                                                 : primitive.alpha.value_or(0);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "field/kernel/inverse_family.h"
+#include "renderer/scene/alpha_forms.h"
 #include "renderer/scene/primitive_forms.h"
 
 namespace marrow {
@@ -64,29 +65,13 @@ Form<Kernel> kernel() {
   });
 }
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-
-Form<Alpha> alpha() {
-  static const Alternatives<Alpha> maps("alpha", "", {}, {"direction", "attribute"});
-  enum class Word { Contact, Sum, PerSkeleton };
-  const auto from_word = [](Word word) {
-    if (word == Word::PerSkeleton) return Alpha(AlphaPerSkeleton{});
-    return word == Word::Sum ? Alpha(AlphaSum{}) : Alpha(AlphaContact{});
-  };
-  const auto from_angle = [](double radians) { return Alpha(radians); };
-  Form<Word> word = choice<Word>({{"contact", Word::Contact}, {"sum", Word::Sum}, {"per_skeleton", Word::PerSkeleton}});
-  // What begins like a word is meant as one, so that a slip gets the words as suggestions and not the range of angles.
-  word.recognises = [](const Value& v) { return v.is_scalar() && !v.text.empty() && is_letter(v.text.front()); };
-  return either<Alpha>({mapped<Alpha>(word, from_word), mapped<Alpha>(primitive_alpha(), from_angle), one_of(maps)});
-}
-
 const Table<Blend>& blend_table() {
   static const Table<Blend> table(
       "blend", "Many skeletons as one smooth body with topology control (Zanni, Cani, Gleicher 2015).",
       {key<Blend>("kernel", &Blend::kernel, kernel(), "the kernel; degree 4 when left out"),
-       key<Blend>("alpha", &Blend::alpha, alpha(),
+       key<Blend>("alpha", &Blend::alpha, alpha_form(),
                   "projection angle: `contact` (when left out) blends where skeletons touch, `sum` is the plain sum, "
-                  "`per_skeleton` takes the skeletons' own"),
+                  "`per_skeleton` takes the skeletons' own, a map lets it vary"),
        key<Blend>("cavity", &Blend::cavity, boolean(), "whether hollows that close are corrected too"),
        key<Blend>("projection", &Blend::projection,
                   choice<Projection>({{"paper", Projection::Paper}, {"exact", Projection::Exact}}),
@@ -235,6 +220,7 @@ std::vector<const TableInfo*> field_tables() {
   for (const TableInfo* table : {&kernel_table().info, &blend_table().info, &union_table().info,
                                  &transform_table().info, &rotation_table().info})
     tables.push_back(table);
+  for (const TableInfo* table : alpha_tables()) tables.push_back(table);
   return tables;
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <numbers>
 
+#include "renderer/scene/alpha_forms.h"
 #include "renderer/scene/files/swc.h"
 #include "renderer/scene/scalar.h"
 
@@ -19,6 +20,8 @@ template <class Skeleton>
 struct Drawn : Skeleton {
   std::optional<SkeletonModel> model;
   std::optional<double> alpha;
+  std::optional<std::array<double, 2>> alpha_bounds;
+  std::vector<Attribute> attributes;
   MaterialId material;
 };
 
@@ -28,13 +31,27 @@ std::vector<Key<Drawn<Skeleton>>> with_common_keys(std::vector<Key<Drawn<Skeleto
   keys.push_back(key<Owner>("model", &Owner::model, skeleton_model(), "its field; the blend's when left out"));
   keys.push_back(key<Owner>("alpha", &Owner::alpha, primitive_alpha(),
                             "in radians, for `alpha: per_skeleton`; contact when left out"));
+  keys.push_back(key<Owner>("alpha_bounds", &Owner::alpha_bounds, direction_bounds_form(),
+                            "for `alpha: {direction: …}`; the blend's when left out"));
+  keys.push_back(key<Owner>("attributes", &Owner::attributes, attributes_form(),
+                            "numbers by name, one for all or one for each point, for `alpha: {attribute: …}`"));
   keys.push_back(key<Owner>("material", &Owner::material, material_name(), "the object's when left out"));
   return keys;
 }
 
 template <class Skeleton>
+Primitive common_of(const Drawn<Skeleton>& drawn) {
+  return {.skeleton = {},
+          .model = drawn.model,
+          .alpha = drawn.alpha,
+          .alpha_bounds = drawn.alpha_bounds,
+          .attributes = drawn.attributes,
+          .material = drawn.material};
+}
+
+template <class Skeleton>
 Primitive primitive(Drawn<Skeleton> drawn) {
-  Primitive made{.skeleton = {}, .model = drawn.model, .alpha = drawn.alpha, .material = drawn.material};
+  Primitive made = common_of(drawn);
   made.skeleton = static_cast<Skeleton&&>(std::move(drawn));
   return made;
 }
@@ -232,7 +249,9 @@ Primitive arc_of(const Drawn<Round>& drawn) {
   arc.axis2 = normalize(arc.axis2 - first * dot(arc.axis2, first)).vec();
   arc.begin = drawn.angles_deg[0] * degree_in_radians;
   arc.end = drawn.angles_deg[1] * degree_in_radians;
-  return {.skeleton = arc, .model = drawn.model, .alpha = drawn.alpha, .material = drawn.material};
+  Primitive made = common_of(drawn);
+  made.skeleton = arc;
+  return made;
 }
 
 struct SkeletonFile {
@@ -267,13 +286,17 @@ SharedSkeletonGraph load(const SkeletonFile& wanted, const Place& at, Reader& re
 }
 
 Primitive with_graph(const Drawn<SkeletonFile>& drawn, SharedSkeletonGraph graph) {
-  return {.skeleton = std::move(graph), .model = drawn.model, .alpha = drawn.alpha, .material = drawn.material};
+  Primitive made = common_of(drawn);
+  made.skeleton = std::move(graph);
+  return made;
 }
 
 }  // namespace
 
 Form<SkeletonModel> skeleton_model() {
-  return choice<SkeletonModel>({{"integral", SkeletonModel::Integral}, {"distance", SkeletonModel::Distance}});
+  return choice<SkeletonModel>({{"integral", SkeletonModel::Integral},
+                                {"distance", SkeletonModel::Distance},
+                                {"cani_hornus", SkeletonModel::CaniHornus}});
 }
 
 Form<double> primitive_alpha() { return radians(between(-1, 1.57079632679489661923)); }

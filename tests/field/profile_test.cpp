@@ -116,7 +116,7 @@ TEST(Profile, ItsBlendsTakeAnglesFromZeroOn) {
   const auto wide = result_of(AlphaContact{}, SkeletonModel::Integral, Kernel{KernelFamily::Compact, 4, 2});
   ASSERT_TRUE(wide);
   EXPECT_EQ(wide->warnings().size(), 1u);
-  EXPECT_FALSE(result_of(AlphaSum{}, SkeletonModel::Distance, cauchy));
+  EXPECT_TRUE(result_of(AlphaSum{}, SkeletonModel::Distance, cauchy));
   EXPECT_FALSE(result_of(AlphaSum{}, SkeletonModel::Integral, compact));
 }
 
