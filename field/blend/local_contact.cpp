@@ -136,7 +136,9 @@ AlphaSample LocalContact::unequal(double spread, const Vec3d& gradient) const {
 AlphaSample LocalContact::crowd_at(const Neighbourhood& at) const {
   constexpr double m = near_degree;
   const double n = kernel_.degree, share = (n - 1) / (m - 1), exponent = (m - 1) / (m - n);
-  if (!(at.near_field > 0 && at.near_field <= field_ceiling && at.field > 0)) return {.value = 1};
+  // below, quotients of the near field lose their digits; that far away C no longer depends on the angle
+  constexpr double smallest_near_field = 1e-250;
+  if (!(at.near_field > smallest_near_field && at.near_field <= field_ceiling && at.field > 0)) return {.value = 1};
   const double crowd = pow(at.field * pow(at.near_field, -share), exponent);
   const Vec3d relative = at.field_gradient / at.field - at.near_gradient * (share / at.near_field);
   return {.value = crowd, .gradient = relative * (crowd * exponent)};

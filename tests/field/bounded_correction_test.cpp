@@ -166,7 +166,7 @@ TEST(BoundedCorrection, LeavesALoneSkeletonAsItIsUpToTheTop) {
 
 TEST(BoundedCorrection, JoinsEqualSkeletonsExactlyWhenTheyTouch) {
   int exact = 0;
-  for (int n = 3; n <= 12; ++n)
+  for (int n = 3; n <= 20; ++n)
     for (const Kernel& kernel : {Kernel{KernelFamily::Cauchy, n, n == 3 ? 1.1 : 1}, Kernel{KernelFamily::Cauchy, n, 2},
                                  Kernel{KernelFamily::Compact, n, 1.3}, Kernel{KernelFamily::Compact, n, 1.6}})
       for (const Projection projection : {Projection::Paper, Projection::Exact}) {
@@ -189,7 +189,7 @@ TEST(BoundedCorrection, JoinsEqualSkeletonsExactlyWhenTheyTouch) {
         EXPECT_TRUE(Correction(kernel, alpha, true, projection).bounded()->solid_alone()) << n << ' ' << kernel.shape;
         ++exact;
       }
-  EXPECT_EQ(exact, 80);
+  EXPECT_EQ(exact, 144);
 }
 
 // Outward from the middle of two equal skeletons the exact projection never rises (field-maths 5: no cavity).
