@@ -2,11 +2,17 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "field/base/id.h"
+#include "field/blend/alpha_sample.h"
 #include "field/blend/correction.h"
+#include "field/blend/directional_alpha.h"
+#include "field/blend/local_contact.h"
 #include "field/description/field_node.h"
 #include "field/math/box3.h"
 #include "field/skeleton/skeleton_sample.h"
@@ -14,12 +20,16 @@
 namespace marrow {
 
 /// Primitives of one kind and the material and angle of each. Invariant: materials is empty (all are the object's) or
-/// parallel to skeletons; alphas is parallel to skeletons in a blend with `alpha_per_skeleton`, else empty.
+/// parallel to skeletons; alphas is parallel to skeletons in a blend with `alpha_per_skeleton`, else empty; alphas_to
+/// (integral segments only) is empty or parallel to skeletons, and then an angle is linear from the one to the other;
+/// strands is empty (each by itself) or parallel to skeletons, ascending: what has one number came from one polyline,
+/// curve, ...
 template <class Skeleton>
 struct PrimitiveList {
   std::vector<Skeleton> skeletons;
   std::vector<MaterialId> materials;
-  std::vector<double> alphas;
+  std::vector<double> alphas, alphas_to;
+  std::vector<std::uint32_t> strands;
 
   std::size_t size() const { return skeletons.size(); }
   bool empty() const { return skeletons.empty(); }
@@ -33,24 +43,47 @@ struct PrimitiveList {
 
 /// Polylines and skeleton graphs are flattened to segments, an isolated root of a graph to a point.
 /// A point has the same field in both skeleton models. Every radius is > 0 and every segment has length > 0.
-/// Under another kernel than the inverse one there are only points and segments, and alpha is pi/2: the reference curve
-/// of those kernels returns to 0 and cannot be inverted (field-maths 0, line 10).
+/// Distance segments of one strand are one primitive: the largest of them counts.
+/// Under another kernel than the inverse one alpha is not negative. Segments of Cani and Hornus stand only under the
+/// inverse kernel of degree 3.
 struct BlendField {
   int degree = 4;
   KernelFamily kernel = KernelFamily::Inverse;
   double kernel_shape = 1;            ///< Kernel::shape
   double alpha = 1.5707963267948966;  ///< resolved, radians in [-1, pi/2]; pi/2 is the plain sum
   bool alpha_per_skeleton = false;    ///< then each primitive has its own, and `alpha` holds where all fields are 0
+  /// By strand, with a bound for each number of a strand; empty otherwise. Points and triangles have no direction.
+  std::vector<DirectionBounds> direction_bounds;
+  std::shared_ptr<const LocalContact> local_contact;  ///< null: not used
+  std::shared_ptr<const AlphaSource> alpha_source;    ///< null: not used
   bool cavity = true;
   Projection projection = Projection::Paper;
   PrimitiveList<PointSkeleton> points;
   PrimitiveList<SegmentSkeleton> segments;           ///< integral (SCALIS) model
   PrimitiveList<SegmentSkeleton> distance_segments;  ///< distance model
-  PrimitiveList<TriangleSkeleton> triangles;
-  PrimitiveList<ArcSkeleton> arcs;  ///< and circles
+  PrimitiveList<SegmentSkeleton> cani_hornus_segments;
+  PrimitiveList<TriangleSkeleton> triangles, distance_triangles;
+  PrimitiveList<ArcSkeleton> arcs, distance_arcs;  ///< and circles
 
+  /// At most one of the rules is there.
+  bool alpha_varies() const {
+    return alpha_per_skeleton || !direction_bounds.empty() || local_contact != nullptr || alpha_source != nullptr;
+  }
+  template <class Visit>
+  void for_each_list(const Visit& visit) const {
+    visit(points);
+    visit(segments);
+    visit(distance_segments);
+    visit(cani_hornus_segments);
+    visit(triangles);
+    visit(distance_triangles);
+    visit(arcs);
+    visit(distance_arcs);
+  }
   std::size_t size() const {
-    return points.size() + segments.size() + distance_segments.size() + triangles.size() + arcs.size();
+    std::size_t count = 0;
+    for_each_list([&](const auto& list) { count += list.size(); });
+    return count;
   }
 };
 
@@ -73,15 +106,14 @@ double corrected_value(const BlendField&, const Vec3d& p);
 template <Derivatives>
 SkeletonSample sum_of_primitives(const BlendField&, const Vec3d& p);
 
-/// With its constant alpha, which is not used when alpha is per skeleton.
+/// With its constant alpha, which is not used when alpha varies.
 Correction correction_of(const BlendField&);
 
-/// sum f_i alpha_i / sum f_i of a blend with alpha_per_skeleton, and its gradient.   [Zanni et al. 2015, eq. 14]
+/// The angle used at p: constant, or
+///   per skeleton  sum f_i alpha_i / sum f_i   [Zanni et al. 2015, eq. 14], linear angles weighted along the segment,
+///   by strand     directional_alpha.h,
+///   local contact local_contact.h,   or from a source.
 /// Where the sum is 0 or infinite: the alpha of the blend, without gradient.
-struct AlphaSample {
-  double value = 0;
-  Vec3d gradient{};
-};
 AlphaSample alpha_at(const BlendField&, const Vec3d& p);
 
 /// What of a blend the ray tracer has no bounds for, as a message; empty when it can trace all of it.

@@ -7,13 +7,22 @@
 
 namespace marrow {
 
-double contact_alpha(int degree, bool cavity, Projection projection) {
+double contact_alpha(const Kernel& kernel, bool cavity, Projection projection) {
+  if (cavity && !contact_is_exact(kernel, cavity, projection)) return contact_alpha(kernel, false, projection);
   double below = 0, above = std::numbers::pi / 2;  // C(2, 0) rises with alpha from less than 1 to 2
   for (;;) {
     const double middle = below + (above - below) / 2;
     if (!(below < middle && middle < above)) return above;
-    (Correction(degree, middle, cavity, projection).value(2, 0) < 1 ? below : above) = middle;
+    (Correction(kernel, middle, cavity, projection).value(2, 0) < 1 ? below : above) = middle;
   }
+}
+
+double contact_alpha(int degree, bool cavity, Projection projection) {
+  return contact_alpha(Kernel{.degree = degree}, cavity, projection);
+}
+
+bool contact_is_exact(const Kernel& kernel, bool cavity, Projection projection) {
+  return Correction(kernel, 0, cavity, projection).value(2, 0) < 1;
 }
 
 }  // namespace marrow

@@ -9,4 +9,10 @@ namespace marrow {
 /// and grad_S f = 0. Found by bisection to the last bits; in (0, pi/2).   [Zanni et al. 2015, sec. 5; field-maths 6.1]
 double contact_alpha(int degree, bool cavity = true, Projection = Projection::Paper);
 
+/// The same for any kernel. Where even alpha = 0 joins two such skeletons before they touch (C(2, 0) >= 1 there: wide
+/// supports, small scales), nothing is exact, and the angle without cavity correction is given; contact_is_exact()
+/// tells.
+double contact_alpha(const Kernel&, bool cavity = true, Projection = Projection::Paper);
+bool contact_is_exact(const Kernel&, bool cavity = true, Projection = Projection::Paper);
+
 }  // namespace marrow

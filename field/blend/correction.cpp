@@ -66,6 +66,11 @@ Correction::Correction(int degree, double alpha, bool cavity, Projection project
   if (alpha < 0) projection_ = Projection::Paper;
 }
 
+Correction::Correction(const Kernel& kernel, double alpha, bool cavity, Projection projection)
+    : Correction(kernel.degree, alpha, cavity, projection) {
+  if (kernel.family != KernelFamily::Inverse) bounded_.emplace(kernel, alpha, cavity, projection);
+}
+
 std::optional<double> Correction::trivial(double f) const {
   if (f > smallest_field && f < largest_field && !is_sum_) return {};
   return std::max(f, 0.0);
@@ -151,11 +156,13 @@ std::optional<Correction::TwoSkeletons> Correction::behind_critical_point(double
 }
 
 bool Correction::in_cavity_branch(double f, double G) const {
-  return !trivial(f) && behind_critical_point(f, G).has_value();
+  if (trivial(f)) return false;
+  return bounded_ ? bounded_->in_cavity_branch(f, G) : behind_critical_point(f, G).has_value();
 }
 
 double Correction::value(double f, double G) const {
   if (const auto v = trivial(f)) return *v;
+  if (bounded_) return bounded_->value(f, G);
   const auto two = behind_critical_point(f, G);
   if (!two) return projected(f, G);
   const int n = degree();
@@ -167,6 +174,7 @@ double Correction::value(double f, double G) const {
 // In the cavity branch C is a function of a alone: d(a^2) along f and G, times dC/da along the critical points.
 Correction::Partials Correction::partials(double f, double G) const {
   if (const auto v = trivial(f)) return {.value = *v, .df = 1, .dG = 0, .dG_over_G = 0, .dalpha = 0};
+  if (bounded_) return bounded_->partials(f, G);
   const auto two = behind_critical_point(f, G);
   if (!two) {
     const Slopes s = projected_slopes(f, G);

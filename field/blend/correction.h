@@ -3,6 +3,8 @@
 
 #include <optional>
 
+#include "field/blend/bounded_correction.h"
+#include "field/blend/correction_partials.h"
 #include "field/description/field_node.h"
 #include "field/kernel/inverse_family.h"
 
@@ -16,23 +18,18 @@ namespace marrow {
 ///                      of D (Zanni et al. 2015, sec. 4.2, with the sign of field-maths 5 step 2).
 ///   alpha < 0          the far-field pole is guarded (field-maths 4.4).
 /// C(0, G) = 0, C(inf, G) = inf; alpha = pi/2 gives exactly f.
+/// Under the Cauchy and the compact kernel: as of BoundedCorrection.
 class Correction {
  public:
-  /// degree in [min_kernel_degree, max_kernel_degree]; alpha in radians, in [-1, pi/2].
+  /// Inverse kernel; degree in [min_kernel_degree, max_kernel_degree]; alpha in radians, in [-1, pi/2].
   Correction(int degree, double alpha, bool cavity, Projection);
+  /// Any kernel; alpha in [0, pi/2] but for the inverse one.
+  Correction(const Kernel&, double alpha, bool cavity, Projection);
 
   /// f >= 0, G >= 0; either may be infinite.
   double value(double f, double G) const;
 
-  struct Partials {
-    double value = 0;
-    double df = 0;
-    double dG = 0;  ///< may be infinite at G = 0 without cavity
-    /// dC/dG / G, so that d(corrected) = df * grad f + dG_over_G * J^T grad_S f. Finite at G = 0 with cavity
-    /// (there the corrected field is smooth); without, 0 is given at G = 0, where no derivative exists.
-    double dG_over_G = 0;
-    double dalpha = 0;  ///< 0 where C = f
-  };
+  using Partials = CorrectionPartials;
   Partials partials(double f, double G) const;
 
   /// Whether the cavity branch is taken at (f, G).
@@ -43,6 +40,8 @@ class Correction {
   bool cavity() const { return cavity_; }
   Projection projection() const { return projection_; }
   bool is_sum() const { return is_sum_; }
+  /// Of a kernel that is finite on its skeletons; else nothing.
+  const std::optional<BoundedCorrection>& bounded() const { return bounded_; }
 
  private:
   struct Slopes {
@@ -69,6 +68,7 @@ class Correction {
   double sin_, cos_;
   bool cavity_, is_sum_;
   Projection projection_;
+  std::optional<BoundedCorrection> bounded_;
 };
 
 }  // namespace marrow

@@ -18,8 +18,10 @@ namespace marrow {
 using FieldNodeId = Id<struct FieldNodeTag>;
 
 /// Whether a primitive is the integral of the kernel along its skeleton (SCALIS, Zanni et al. 2013)
-/// or the kernel of the smallest scaled distance (eq. 4 of Zanni et al. 2015, corrected to a maximum).
-enum class SkeletonModel { Integral, Distance };
+/// or the kernel of the smallest scaled distance (eq. 4 of Zanni et al. 2015, corrected to a maximum), or the older
+/// integral of 1/r^3 with the radius at the foot of the point (Cani and Hornus 2001; points and lines, inverse kernel of
+/// degree 3).
+enum class SkeletonModel { Integral, Distance, CaniHornus };
 
 /// Radii are surface radii: an isolated infinite line of radius r has its surface at distance r.
 struct PointSkeleton {
@@ -77,14 +79,23 @@ struct SkeletonGraph {
 /// Shared: a large skeleton placed many times is held once. Never null in a valid description.
 using SharedSkeletonGraph = std::shared_ptr<const SkeletonGraph>;
 
+/// A number that an author gives to a skeleton, linear between its nodes.
+struct Attribute {
+  std::string name;
+  std::vector<double> values;  ///< one for all nodes, or one for each
+  friend bool operator==(const Attribute&, const Attribute&) = default;
+};
+
 /// What a blend sums. A root without children contributes a point.
 struct Primitive {
   std::variant<PointSkeleton, SegmentSkeleton, PolylineSkeleton, CurveSkeleton, SharedSkeletonGraph, TriangleSkeleton,
                ArcSkeleton>
       skeleton;
-  std::optional<SkeletonModel> model;  ///< default: the blend's
-  std::optional<double> alpha;         ///< radians in [-1, pi/2], used by AlphaPerSkeleton
-  MaterialId material;                 ///< invalid: the object's
+  std::optional<SkeletonModel> model;                 ///< default: the blend's
+  std::optional<double> alpha;                        ///< radians in [-1, pi/2], used by AlphaPerSkeleton
+  std::optional<std::array<double, 2>> alpha_bounds;  ///< of crossing and of parallel, used by AlphaDirection
+  std::vector<Attribute> attributes;                  ///< used by AlphaAttribute
+  MaterialId material;                                ///< invalid: the object's
 };
 
 enum class KernelFamily { Inverse, Cauchy, Compact };
@@ -102,7 +113,38 @@ struct AlphaContact {};  ///< the value at which two equal skeletons blend exact
 struct AlphaSum {};      ///< pi/2: the plain sum
 /// Mean of the primitives' own angles, weighted by their fields (eq. 14); contact for those without.
 struct AlphaPerSkeleton {};
-using Alpha = std::variant<AlphaContact, AlphaSum, double, AlphaPerSkeleton>;  ///< or radians, in [-1, pi/2]
+/// From a value to an angle: linear from `from` to `to`, level outside.
+struct AlphaRamp {
+  std::array<double, 2> from{0, 1}, to{0, 1};
+  double operator()(double value) const {
+    const double share = (value - from[0]) / (from[1] - from[0]);
+    return to[0] + (to[1] - to[0]) * (share < 0 ? 0 : share > 1 ? 1 : share);
+  }
+  friend bool operator==(const AlphaRamp&, const AlphaRamp&) = default;
+};
+/// Directional blending (eq. 15, 16): the angle of crossing strands and of parallel ones. A polyline, curve or skeleton
+/// is one strand.
+struct AlphaDirection {
+  double least = 0, most = 0;
+};
+/// As AlphaPerSkeleton, with the angle from an attribute of the skeleton; `radius` is always there. Without a ramp the
+/// attribute is the angle.
+struct AlphaAttribute {
+  std::string name;
+  std::optional<AlphaRamp> ramp;
+};
+/// The angle from the value of another field.
+struct AlphaFromField {
+  FieldNodeId field;
+  AlphaRamp ramp;
+};
+/// Contact, adapted to unequal radii and to how many skeletons meet (field/blend/local_contact.h).
+struct AlphaLocalContact {
+  bool radii = true, density = true;
+};
+/// Or radians, in [-1, pi/2].
+using Alpha = std::variant<AlphaContact, AlphaSum, double, AlphaPerSkeleton, AlphaDirection, AlphaAttribute,
+                           AlphaFromField, AlphaLocalContact>;
 
 enum class Projection { Paper, Exact };
 

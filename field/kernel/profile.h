@@ -1,4 +1,4 @@
-// The Cauchy and the compact kernel with their normalisations.
+// A kernel of any family with its normalisation for points, curves and surfaces.
 #pragma once
 
 #include "field/description/field_node.h"
@@ -10,17 +10,19 @@ struct ProfileSample {
   double value, slope, curvature;
 };
 
-/// k_m of a point (dimension 0) or a curve (1), normalised so that f = 1 at a radius from a point or an infinite line.
+/// k_m of a point (dimension 0), a curve (1) or a surface (2), normalised so that f = 1 at a radius from a point, an
+/// infinite line or an infinite plane.
+///   inverse  y^(-m/2),               m = n - 1 + dimension
 ///   Cauchy   (1 + s^2 y)^(-m/2),     m = n - 1 + dimension
 ///   compact  (1 - y / R^2)^(m/2),    m = n + 1 - dimension; 0 beyond y = R^2     [field-maths 1]
-/// Precondition: the family is not the inverse one; s > 0, R > 1.
+/// Precondition: s > 0, R > 1.
 class Profile {
  public:
   Profile(const Kernel&, int dimension);
 
   int degree() const { return degree_; }
   double normalisation() const { return normalisation_; }
-  /// Precondition for the compact kernel: y <= R^2.
+  /// y >= 0, for the inverse kernel > 0.
   ProfileSample at(double y) const;
 
  private:

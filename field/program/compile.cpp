@@ -1,5 +1,7 @@
 // Walks a description from its root with a stack of placements; no recursion, so no depth limit.
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <numbers>
@@ -13,6 +15,8 @@
 #include "field/base/overloaded.h"
 #include "field/blend/contact.h"
 #include "field/program/field_program.h"
+#include "field/program/node_angles.h"
+#include "field/program/ramped_field.h"
 #include "field/program/validate.h"
 #include "field/skeleton/subdivision_curve.h"
 #include "field/tree/tree_node.h"
@@ -32,14 +36,24 @@ struct Placement {
 class ContactAngles {
  public:
   double of(const Blend& blend) {
-    const Key key{blend.kernel.degree, blend.cavity, blend.projection};
+    const Kernel& k = blend.kernel;
+    const Key key{k.family, k.degree, k.shape, blend.cavity, blend.projection};
     const auto known = angles_.find(key);
     if (known != angles_.end()) return known->second;
-    return angles_[key] = std::apply(contact_alpha, key);
+    return angles_[key] = contact_alpha(k, blend.cavity, blend.projection);
+  }
+  std::shared_ptr<const LocalContact> local(const Blend& blend, const AlphaLocalContact& rule) {
+    const Kernel& k = blend.kernel;
+    auto& known = local_[{k.family, k.degree, k.shape, blend.cavity, blend.projection, rule.radii, rule.density}];
+    if (!known)
+      known = std::make_shared<const LocalContact>(k, blend.cavity, blend.projection, rule.radii, rule.density);
+    return known;
   }
 
  private:
-  using Key = std::tuple<int, bool, Projection>;
+  std::map<std::tuple<KernelFamily, int, double, bool, Projection, bool, bool>, std::shared_ptr<const LocalContact>>
+      local_;
+  using Key = std::tuple<KernelFamily, int, double, bool, Projection>;
   std::map<Key, double> angles_;
 };
 
@@ -53,27 +67,29 @@ Blend blend_of(FieldNodeId primitive) {
 // Adds the skeleton of one primitive to a blend, mapped by a similarity.
 class Flattener {
  public:
-  Flattener(BlendField& field, const Affine& map, double scale, SkeletonModel model, const Primitive& primitive)
+  Flattener(BlendField& field, const Affine& map, double scale, SkeletonModel model, const Primitive& primitive,
+            const Alpha& alpha, std::uint32_t strand)
       : field_(field),
         map_(map),
         scale_(scale),
         model_(primitive.model.value_or(model)),
         material_(primitive.material),
-        alpha_(primitive.alpha.value_or(field.alpha)) {}
+        angles_(primitive, alpha, field.alpha),
+        strand_(strand) {}
 
-  void operator()(const PointSkeleton& s) { add(field_.points, PointSkeleton{map_.point(s.at), s.radius * scale_}); }
+  void operator()(const PointSkeleton& s) { add_point(s, 0); }
 
   // A segment of no length has no integral; its scaled distance is that of its larger end.
   void operator()(const SegmentSkeleton& s) {
     if (model_ == SkeletonModel::Distance && !(length(s.to - s.from) > 0))
-      (*this)(PointSkeleton{s.from, std::max(s.radius_from, s.radius_to)});
-    else add_segment(s.from, s.to, s.radius_from, s.radius_to);
+      add_point({s.from, std::max(s.radius_from, s.radius_to)}, 0);
+    else add_segment(s.from, s.to, s.radius_from, s.radius_to, 0, 1);
   }
 
   void operator()(const PolylineSkeleton& s) {
     segments().skeletons.reserve(segments().size() + s.points.size());
     for (std::size_t i = 1; i < s.points.size(); ++i)
-      add_segment(s.points[i - 1], s.points[i], s.radii[i - 1], s.radii[i]);
+      add_segment(s.points[i - 1], s.points[i], s.radii[i - 1], s.radii[i], i - 1, i);
   }
 
   void operator()(const CurveSkeleton& s) { (*this)(subdivide(s)); }
@@ -88,9 +104,9 @@ class Flattener {
     for (std::size_t i = 0; i < count; ++i) {
       if (s.parents[i] != SkeletonGraph::no_parent) {
         const auto parent = static_cast<std::size_t>(s.parents[i]);
-        add_segment(s.positions[parent], s.positions[i], s.radii[parent], s.radii[i]);
+        add_segment(s.positions[parent], s.positions[i], s.radii[parent], s.radii[i], parent, i);
       } else if (!has_child[i]) {
-        (*this)(PointSkeleton{s.positions[i], s.radii[i]});
+        add_point({s.positions[i], s.radii[i]}, i);
       }
     }
   }
@@ -99,7 +115,7 @@ class Flattener {
     TriangleSkeleton mapped = s;
     for (Vec3d& vertex : mapped.vertices) vertex = map_.point(vertex);
     for (double& radius : mapped.radii) radius *= scale_;
-    add(field_.triangles, mapped);
+    add(model_ == SkeletonModel::Distance ? field_.distance_triangles : field_.triangles, mapped, angles_.mean());
   }
 
   void operator()(const ArcSkeleton& s) {
@@ -110,7 +126,7 @@ class Flattener {
     mapped.major *= scale_;
     mapped.radius_from *= scale_;
     mapped.radius_to *= scale_;
-    add(field_.arcs, mapped);
+    add(model_ == SkeletonModel::Distance ? field_.distance_arcs : field_.arcs, mapped, angles_.mean());
   }
 
   SkeletonModel model() const { return model_; }
@@ -118,17 +134,30 @@ class Flattener {
 
  private:
   template <class Skeleton>
-  void add(PrimitiveList<Skeleton>& list, const Skeleton& mapped) {
+  void add(PrimitiveList<Skeleton>& list, const Skeleton& mapped, double alpha) {
     list.add(mapped, material_);
-    if (field_.alpha_per_skeleton) list.alphas.push_back(alpha_);
+    if (field_.alpha_per_skeleton) list.alphas.push_back(alpha);
+    if (!field_.direction_bounds.empty()) list.strands.push_back(strand_);
+  }
+  void add_point(const PointSkeleton& s, std::size_t node) {
+    add(field_.points, PointSkeleton{map_.point(s.at), s.radius * scale_}, angles_.of(node));
   }
   PrimitiveList<SegmentSkeleton>& segments() {
-    return model_ == SkeletonModel::Distance ? field_.distance_segments : field_.segments;
+    if (model_ == SkeletonModel::Integral) return field_.segments;
+    return model_ == SkeletonModel::Distance ? field_.distance_segments : field_.cani_hornus_segments;
   }
-  void add_segment(const Vec3d& from, const Vec3d& to, double radius_from, double radius_to) {
+  void add_segment(const Vec3d& from, const Vec3d& to, double radius_from, double radius_to, std::size_t first,
+                   std::size_t second) {
     const SegmentSkeleton mapped{map_.point(from), map_.point(to), radius_from * scale_, radius_to * scale_};
-    if (length(mapped.to - mapped.from) > 0) add(segments(), mapped);
-    else ++without_length_;
+    if (!(length(mapped.to - mapped.from) > 0)) return void(++without_length_);
+    const double begin = angles_.of(first), end = angles_.of(second);
+    if (model_ != SkeletonModel::Integral) {
+      add(segments(), mapped, (begin + end) / 2);
+      if (model_ == SkeletonModel::Distance && field_.direction_bounds.empty()) segments().strands.push_back(strand_);
+      return;
+    }
+    add(field_.segments, mapped, begin);
+    if (field_.alpha_per_skeleton) field_.segments.alphas_to.push_back(end);
   }
 
   BlendField& field_;
@@ -136,7 +165,8 @@ class Flattener {
   double scale_;
   SkeletonModel model_;
   MaterialId material_;
-  double alpha_;
+  NodeAngles angles_;
+  std::uint32_t strand_;
   std::size_t without_length_ = 0;
 };
 
@@ -149,7 +179,12 @@ class Compiler {
 
   Result<FieldProgram> run() {
     if (Diagnostics wrong = validate(description_); !wrong.empty()) return wrong;
-    std::vector<Placement> open{{description_.root, Affine{}}};
+    return run_from({description_.root, Affine{}});
+  }
+
+ private:
+  Result<FieldProgram> run_from(const Placement& root) {
+    std::vector<Placement> open{root};
     while (!open.empty() && placements_ <= max_placements_) {
       const Placement here = open.back();
       open.pop_back();
@@ -164,13 +199,11 @@ class Compiler {
                  description_[here.node].what);
     }
     if (placements_ > max_placements_)
-      report(description_.root, "the field holds over a million copies of its own nodes",
-             "place fewer copies inside copies");
+      report(root.node, "the field holds over a million copies of its own nodes", "place fewer copies inside copies");
     if (!errors_.empty()) return errors_;
     return FieldProgram(std::move(parts_), std::move(trees_), std::move(warnings_));
   }
 
- private:
   // The last child first, so that the stack gives them in their order.
   static void push_children(const std::vector<FieldNodeId>& children, const Affine& map, std::vector<Placement>& open) {
     for (auto child = children.rbegin(); child != children.rend(); ++child) open.push_back({*child, map});
@@ -187,15 +220,39 @@ class Compiler {
     field.degree = blend.kernel.degree;
     field.kernel = blend.kernel.family;
     field.kernel_shape = blend.kernel.shape;
-    field.alpha =
-        std::visit(Overloaded{[&](AlphaContact) { return contact_.of(blend); },
-                              [&](AlphaPerSkeleton) { return contact_.of(blend); },
-                              [](AlphaSum) { return std::numbers::pi / 2; }, [](double radians) { return radians; }},
-                   blend.alpha);
-    field.alpha_per_skeleton = std::holds_alternative<AlphaPerSkeleton>(blend.alpha);
+    field.alpha = std::visit(
+        Overloaded{[](AlphaSum) { return std::numbers::pi / 2; }, [](double radians) { return radians; },
+                   [](const AlphaDirection& d) { return d.most; }, [&](const auto&) { return contact_.of(blend); }},
+        blend.alpha);
+    field.alpha_per_skeleton =
+        std::holds_alternative<AlphaPerSkeleton>(blend.alpha) || std::holds_alternative<AlphaAttribute>(blend.alpha);
+    if (const auto* rule = std::get_if<AlphaLocalContact>(&blend.alpha))
+      field.local_contact = contact_.local(blend, *rule);
     field.cavity = blend.cavity;
     field.projection = blend.projection;
     return field;
+  }
+
+  void warn(FieldNodeId node, std::string message, std::string hint) {
+    if (reported_[node.index()]) return;
+    reported_[node.index()] = true;
+    warnings_.push_back({.where = description_[node].where,
+                         .message = std::move(message),
+                         .hint = std::move(hint),
+                         .severity = Severity::Warning});
+  }
+
+  // What a kernel that is finite on its skeletons cannot keep.
+  void warn_of_bounded_kernel(const Blend& blend, const BlendField& field, FieldNodeId node) {
+    const Correction correction = correction_of(field);
+    if (!correction.bounded() || std::holds_alternative<AlphaSum>(blend.alpha)) return;
+    const std::string narrower =
+        blend.kernel.family == KernelFamily::Cauchy ? "a larger `scale`" : "a smaller `support`";
+    if (!correction.bounded()->solid_alone())
+      warn(node, "skeletons of this kernel are hollow with this alpha", "use " + narrower + ", or a larger alpha");
+    else if (std::holds_alternative<AlphaContact>(blend.alpha) &&
+             !contact_is_exact(blend.kernel, blend.cavity, blend.projection))
+      warn(node, "skeletons of this kernel join before they touch, whatever alpha", "use " + narrower);
   }
 
   void add_part(const Blend& blend, const Placement& here, std::optional<SkeletonModel> model = {}) {
@@ -205,19 +262,23 @@ class Compiler {
   PlacedBlend part_of(const Blend& blend, const Placement& here, std::optional<SkeletonModel> model = {}) {
     PlacedBlend part;
     part.blend = empty_field(blend);
+    warn_of_bounded_kernel(blend, part.blend, here.node);
     const bool baked = here.from_node.similarity().has_value();
     if (!baked) {
       part.world_from_local = here.from_node;
       part.local_from_world = here.from_node.inverse();
     }
     const Affine to_blend = baked ? here.from_node : Affine{};
+    if (const auto* rule = std::get_if<AlphaFromField>(&blend.alpha))
+      part.blend.alpha_source = source_of(*rule, {rule->field, to_blend});
+    strand_ = 0;
     std::vector<Placement> open;
     push_children(blend.of, to_blend, open);
     while (!open.empty() && placements_ <= max_placements_) {
       const Placement child = open.back();
       open.pop_back();
       ++placements_;
-      add_child(child, model.value_or(blend.model), part.blend, open);
+      add_child(child, blend, model.value_or(blend.model), part.blend, open);
     }
     return part;
   }
@@ -305,20 +366,36 @@ class Compiler {
     return indices;
   }
 
-  void add_child(const Placement& child, SkeletonModel model, BlendField& field, std::vector<Placement>& open) {
-    std::visit(
-        Overloaded{[&](const Primitive& p) { add_primitive(p, child, model, field); },
-                   [&](const Transform& t) {
-                     if (!t.parent_from_child.similarity())
-                       return report(child.node, "a transform inside a blend that changes shape",
-                                     "inside a blend move, rotate and scale uniformly; "
-                                     "or put the transform above the blend");
-                     open.push_back({t.of, child.from_node * t.parent_from_child});
-                   },
-                   [&](const Union&) { report_nesting(child.node, "union"); },
-                   [&](const Blend&) { report_nesting(child.node, "blend"); },
-                   [&](const GeneralNode& n) { report_nesting(child.node, std::string(info_of(n.node->node).name)); }},
-        description_[child.node].what);
+  // The field of angles of a blend, which is placed with it.
+  std::shared_ptr<const AlphaSource> source_of(const AlphaFromField& rule, const Placement& place) {
+    if (is_source_) {
+      report(place.node, "an alpha from a field, within the field of another alpha", "one field may steer a blend");
+      return nullptr;
+    }
+    Compiler inner(description_);
+    inner.is_source_ = true;
+    auto program = inner.run_from(place);
+    if (program) return std::make_shared<RampedField>(*std::move(program), rule.ramp);
+    errors_.insert(errors_.end(), program.why().begin(), program.why().end());
+    return nullptr;
+  }
+
+  void add_child(const Placement& child, const Blend& blend, SkeletonModel model, BlendField& field,
+                 std::vector<Placement>& open) {
+    std::visit(Overloaded{[&](const Primitive& p) { add_primitive(p, child, blend, model, field); },
+                          [&](const Transform& t) {
+                            if (!t.parent_from_child.similarity())
+                              return report(child.node, "a transform inside a blend that changes shape",
+                                            "inside a blend move, rotate and scale uniformly; "
+                                            "or put the transform above the blend");
+                            open.push_back({t.of, child.from_node * t.parent_from_child});
+                          },
+                          [&](const Union&) { report_nesting(child.node, "union"); },
+                          [&](const Blend&) { report_nesting(child.node, "blend"); },
+                          [&](const GeneralNode& n) {
+                            report_nesting(child.node, std::string(info_of(n.node->node).name));
+                          }},
+               description_[child.node].what);
   }
 
   void report_nesting(FieldNodeId node, const std::string& kind) {
@@ -326,30 +403,33 @@ class Compiler {
            "a blend takes skeletons (point, segment, polyline, skeleton), or transforms of them");
   }
 
-  void add_primitive(const Primitive& primitive, const Placement& child, SkeletonModel model, BlendField& field) {
+  void add_primitive(const Primitive& primitive, const Placement& child, const Blend& blend, SkeletonModel model,
+                     BlendField& field) {
     // Each map on the way is a similarity, so that any column has the scale of all together.
     const double scale = length(child.from_node.columns[0]);
-    Flattener flatten(field, child.from_node, scale, model, primitive);
+    if (const auto* rule = std::get_if<AlphaDirection>(&blend.alpha)) {
+      const auto [least, most] = primitive.alpha_bounds.value_or(std::array{rule->least, rule->most});
+      field.direction_bounds.push_back({least, most});
+    }
+    Flattener flatten(field, child.from_node, scale, model, primitive, blend.alpha, strand_++);
     std::visit(flatten, primitive.skeleton);
-    const bool is_integral_only = std::holds_alternative<TriangleSkeleton>(primitive.skeleton) ||
-                                  std::holds_alternative<ArcSkeleton>(primitive.skeleton);
-    if (is_integral_only && flatten.model() == SkeletonModel::Distance)
-      report(child.node, "`model: distance` is not there for triangles, circles and arcs",
-             "say `model: integral` here");
-    const bool is_inverse_only = is_integral_only || (flatten.model() == SkeletonModel::Distance &&
-                                                      !std::holds_alternative<PointSkeleton>(primitive.skeleton));
-    if (is_inverse_only && field.kernel != KernelFamily::Inverse)
-      report(child.node, "this skeleton is not there for the kernels cauchy and compact",
-             "they take points and, with `model: integral`, segments, polylines, curves and skeletons");
-    if (field.alpha_per_skeleton && field.projection == Projection::Exact && primitive.alpha && *primitive.alpha < 0)
-      report(child.node, "an alpha below 0 with the exact projection",
-             "below alpha = 0 only `projection: paper` is defined");
-    if (flatten.without_length() == 0 || reported_[child.node.index()]) return;
-    reported_[child.node.index()] = true;
-    warnings_.push_back({.where = description_[child.node].where,
-                         .message = std::to_string(flatten.without_length()) + " segments have no length",
-                         .hint = "a segment without length adds nothing; use a point for a ball",
-                         .severity = Severity::Warning});
+    if (flatten.model() == SkeletonModel::CaniHornus) {
+      if (std::holds_alternative<TriangleSkeleton>(primitive.skeleton) ||
+          std::holds_alternative<ArcSkeleton>(primitive.skeleton))
+        report(child.node, "`model: cani_hornus` is not there for triangles, circles and arcs",
+               "say `model: integral` here");
+      else if (field.kernel != KernelFamily::Inverse || field.degree != 3)
+        report(child.node, "`model: cani_hornus` is an integral of 1/r^3", "give the blend `kernel: {inverse: 3}`");
+    }
+    const bool is_any_angle_defined = field.projection == Projection::Paper && field.kernel == KernelFamily::Inverse;
+    const double least = primitive.alpha_bounds ? std::min((*primitive.alpha_bounds)[0], (*primitive.alpha_bounds)[1])
+                                                : primitive.alpha.value_or(0);
+    if (field.alpha_varies() && least < 0 && !is_any_angle_defined)
+      report(child.node, "an alpha below 0 with this kernel or projection",
+             "below alpha = 0 only the kernel `inverse` with `projection: paper` is defined");
+    if (flatten.without_length() > 0)
+      warn(child.node, std::to_string(flatten.without_length()) + " segments have no length",
+           "a segment without length adds nothing; use a point for a ball");
   }
 
   const FieldDescription& description_;
@@ -359,6 +439,8 @@ class Compiler {
   Diagnostics errors_, warnings_;
   ContactAngles contact_;
   std::size_t placements_ = 0, max_placements_;
+  std::uint32_t strand_ = 0;  // of the blend in hand
+  bool is_source_ = false;    // a field of angles, within another compilation
 };
 
 }  // namespace

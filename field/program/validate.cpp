@@ -13,8 +13,10 @@
 
 #include "field/base/overloaded.h"
 #include "field/base/result.h"
+#include "field/blend/local_contact.h"
 #include "field/kernel/inverse_family.h"
 #include "field/program/validate_node.h"
+#include "field/program/node_angles.h"
 #include "field/skeleton/subdivision_curve.h"
 
 namespace marrow {
@@ -140,9 +142,25 @@ void check_alpha(double alpha, Findings& findings) {
                  "alpha is from -1 to pi/2 radians, or contact, or sum, or per_skeleton");
 }
 
+void check_attributes(const std::vector<Attribute>& attributes, std::size_t nodes, Findings& findings) {
+  for (const Attribute& attribute : attributes) {
+    if (attribute.values.size() != 1 && attribute.values.size() != nodes)
+      findings.add(fmt::format("{} values of the attribute `{}`", attribute.values.size(), attribute.name),
+                   fmt::format("give one value for all, or one for each of the {} nodes", nodes));
+    for (const double value : attribute.values)
+      if (!std::isfinite(value))
+        return findings.add("an attribute that is not finite", "attributes are finite numbers");
+  }
+}
+
 void check(const Primitive& primitive, Findings& findings) {
   std::visit([&](const auto& skeleton) { check(skeleton, findings); }, primitive.skeleton);
   if (primitive.alpha) check_alpha(*primitive.alpha, findings);
+  if (primitive.alpha_bounds)
+    for (const double alpha : *primitive.alpha_bounds) check_alpha(alpha, findings);
+  if (primitive.attributes.empty()) return;
+  const auto* graph = std::get_if<SharedSkeletonGraph>(&primitive.skeleton);
+  if (graph == nullptr || *graph) check_attributes(primitive.attributes, node_count(primitive), findings);
 }
 
 void check_shape(const Kernel& kernel, Findings& findings) {
@@ -152,21 +170,51 @@ void check_shape(const Kernel& kernel, Findings& findings) {
                  "the scale of a Cauchy kernel is above 0, the support of a compact one above 1 radius");
 }
 
+// Below 0 an angle is defined for the inverse kernel and the paper's projection.
+void check_angle_of(const Blend& blend, double alpha, Findings& findings) {
+  check_alpha(alpha, findings);
+  if (!(alpha >= smallest_alpha && alpha < 0)) return;
+  if (blend.kernel.family != KernelFamily::Inverse)
+    findings.add(fmt::format("alpha {} with this kernel", alpha), "below alpha = 0 only `inverse` is defined");
+  else if (blend.projection == Projection::Exact)
+    findings.add(fmt::format("alpha {} with the exact projection", alpha),
+                 "below alpha = 0 only `projection: paper` is defined");
+}
+
+void check_ramp(const Blend& blend, const AlphaRamp& ramp, Findings& findings) {
+  for (const double alpha : ramp.to) check_angle_of(blend, alpha, findings);
+  if (!(ramp.from[0] < ramp.from[1]) || !std::isfinite(ramp.from[1] - ramp.from[0]))
+    findings.add(fmt::format("a ramp from {} to {}", ramp.from[0], ramp.from[1]), "two values, the smaller first");
+}
+
+void check_rule(const Blend& blend, Findings& findings) {
+  std::visit(Overloaded{[&](double alpha) { check_angle_of(blend, alpha, findings); },
+                        [&](const AlphaDirection& rule) {
+                          check_angle_of(blend, rule.least, findings);
+                          check_angle_of(blend, rule.most, findings);
+                        },
+                        [&](const AlphaAttribute& rule) {
+                          if (rule.ramp) check_ramp(blend, *rule.ramp, findings);
+                        },
+                        [&](const AlphaFromField& rule) { check_ramp(blend, rule.ramp, findings); },
+                        [&](const AlphaLocalContact& rule) {
+                          if (rule.density && (blend.kernel.family != KernelFamily::Inverse ||
+                                               blend.kernel.degree > LocalContact::max_dense_degree))
+                            findings.add("a contact that adapts to density with this kernel",
+                                         fmt::format("it needs the kernel `inverse` of a degree up to {}",
+                                                     LocalContact::max_dense_degree));
+                        },
+                        [](const auto&) {}},
+             blend.alpha);
+}
+
 void check(const Blend& blend, Findings& findings) {
   const int degree = blend.kernel.degree;
   if (degree < min_kernel_degree || degree > max_kernel_degree)
     findings.add(fmt::format("kernel degree {} is out of range", degree),
                  fmt::format("the degree is a whole number from {} to {}", min_kernel_degree, max_kernel_degree));
   check_shape(blend.kernel, findings);
-  if (blend.kernel.family != KernelFamily::Inverse && !std::holds_alternative<AlphaSum>(blend.alpha))
-    findings.add("a kernel that blends only as the plain sum",
-                 "write `alpha: sum`; topology control needs the kernel `inverse`");
-  if (const double* alpha = std::get_if<double>(&blend.alpha)) {
-    check_alpha(*alpha, findings);
-    if (*alpha >= smallest_alpha && *alpha < 0 && blend.projection == Projection::Exact)
-      findings.add(fmt::format("alpha {} with the exact projection", *alpha),
-                   "below alpha = 0 only `projection: paper` is defined");
-  }
+  check_rule(blend, findings);
   if (blend.of.empty()) findings.add("a blend of nothing", "list primitives under `of:`");
 }
 
@@ -212,6 +260,8 @@ Diagnostics validate(const FieldDescription& description) {
                             check_children(group.of, i, findings);
                           }},
                node.what);
+    if (const Blend* blend = std::get_if<Blend>(&node.what))
+      if (const auto* rule = std::get_if<AlphaFromField>(&blend->alpha)) check_children({&rule->field, 1}, i, findings);
   }
   if (!description.root.valid() || description.root.index() >= description.nodes.size())
     all.push_back(failure("a field without a root"));

@@ -7,32 +7,15 @@
 #include "field/kernel/inverse_family.h"
 #include "field/kernel/panels.h"
 #include "field/math/elementary.h"
+#include "field/skeleton/arc_view.h"
 #include "field/skeleton/skeletons.h"
 
 namespace marrow {
 namespace {
 
-// An arc in cylindrical coordinates about its axis: the point lies at (r, angle 0, z), the arc at radius `major`
-// from `begin` to `end`, turned by whole turns so that its middle is nearest to the point.
-struct ArcView {
-  Vec3d radial, tangential, normal;
-  double r, z, begin, end;
-};
-
-ArcView view_from(const ArcSkeleton& arc, const Vec3d& p) {
-  const Vec3d v = p - arc.center;
-  const double x = dot(v, arc.axis1), y = dot(v, arc.axis2), r = std::sqrt(x * x + y * y);
-  const Vec3d normal = cross(arc.axis1, arc.axis2);
-  const Vec3d radial = r > 0 ? (arc.axis1 * x + arc.axis2 * y) / r : arc.axis1;
-  const double angle = r > 0 ? atan2(y, x) : 0, turn = 2 * std::numbers::pi;
-  const double turns = turn * std::floor(((arc.begin + arc.end) / 2 - angle) / turn + 0.5);
-  return {radial, cross(normal, radial), normal, r, dot(v, normal), arc.begin - angle - turns, arc.end - angle - turns};
-}
-
 // d^2 = z^2 + (r - major)^2 + 4 r major sin^2(angle / 2) vanishes at angle = +- i eta and whole turns away.
 double singular_angle(const ArcView& v, double major) {
-  const double gap = v.z * v.z + (v.r - major) * (v.r - major);
-  return v.r > 0 ? 2 * asinh(std::sqrt(gap / (4 * v.r * major))) : std::numeric_limits<double>::infinity();
+  return v.r > 0 ? 2 * asinh(std::sqrt(v.gap() / (4 * v.r * major))) : std::numeric_limits<double>::infinity();
 }
 
 // tau^(n-1) d^-n
@@ -51,7 +34,7 @@ SkeletonSample arc_field(const ArcSkeleton& arc, const Vec3d& p, int n) {
   const std::array<Singularity, 3> singularities{Singularity{-turn, eta}, Singularity{0, eta}, Singularity{turn, eta}};
   if (distance_to(singularities, v.begin, v.end) == 0) return SkeletonSample::on_skeleton();
   const double tau_slope = (arc.radius_to - arc.radius_from) / (v.end - v.begin);
-  const double scale = arc.major / curve_normalisation(n), gap = v.z * v.z + (v.r - arc.major) * (v.r - arc.major);
+  const double scale = arc.major / curve_normalisation(n), gap = v.gap();
   SkeletonSample sum;
   // Within a radian the cosine is as good as a parabola to a rule of 20 nodes.
   for_each_panel(v.begin, v.end, singularities, 1, [&](const Panel& panel) {

@@ -1,97 +1,30 @@
-// Points and segments under the Cauchy and the compact kernel, by Gauss-Legendre panels.
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <numbers>
-
-#include "field/kernel/inverse_family.h"
-#include "field/kernel/panels.h"
-#include "field/kernel/profile.h"
-#include "field/math/elementary.h"
+// Points and segments under the Cauchy and the compact kernel; shares and Hessians of segments under any.
+#include "field/skeleton/line_integral.h"
+#include "field/skeleton/shares.h"
 #include "field/skeleton/skeletons.h"
 
 namespace marrow {
 namespace {
 
-// Adds weight k(d/tau) / tau^dimension and its derivatives, v = p - q.
-template <Derivatives Order>
-void add_source(const Profile& profile, const Vec3d& v, double tau, double weight, SkeletonSample& sum) {
-  const auto [value, slope, curvature] = profile.at(length_squared(v) / (tau * tau));
-  const double k = 2 * weight * slope / tau;
-  sum.value += weight * value;
-  if constexpr (Order >= Derivatives::First) sum.gradient += v * (k / tau);
-  sum.si_gradient += v * k;
-  if constexpr (Order >= Derivatives::Second)
-    sum.si_jacobian +=
-        Matrix3::scaled_identity(k) + Matrix3::outer(v, v) * (4 * weight * curvature / (tau * tau * tau));
-}
-
-// A segment from the foot of the point: radius tau(t) = at_foot + slope t over [t1, t2], the point at height h.
-struct Line {
-  double t1, t2, h_squared, at_foot, slope;
+// A segment as a line seen from p.
+struct SeenLine {
+  double length, foot;
+  UnitVec3 along;
+  Vec3d across;
+  Line line;
 };
 
-// tau^2 + s^2 (t^2 + h^2) = 0.
-Singularity of_cauchy(const Line& line, double s) {
-  const double lambda = line.slope * line.slope + s * s;
-  return {-line.slope * line.at_foot / lambda,
-          s * std::sqrt(line.at_foot * line.at_foot + lambda * line.h_squared) / lambda};
+SeenLine seen_from(const SegmentSkeleton& s, const Vec3d& p) {
+  const double length = marrow::length(s.to - s.from);
+  const UnitVec3 u = UnitVec3::unchecked((s.to - s.from) / length);
+  const double foot = dot(p - s.from, u), slope = (s.radius_to - s.radius_from) / length;
+  const Vec3d across = p - s.from - u * foot;
+  return {length, foot, u, across, {-foot, length - foot, length_squared(across), s.radius_from + slope * foot, slope}};
 }
 
-// Calls visit(t, dt) at the nodes of a rule for the Cauchy kernel.
-template <class Visit>
-void integrate_cauchy(const Line& line, const Kernel& kernel, const Visit& visit) {
-  const Singularity pole = of_cauchy(line, kernel.shape);
-  for_each_panel(line.t1, line.t2, {&pole, 1}, line.t2 - line.t1,
-                 [&](const Panel& panel) { for_each_node(panel, line.slope == 0 ? 0 : kernel.degree, visit); });
-}
-
-// Where the kernel reaches: A t^2 + 2 B t + C < 0 with A = 1 - R^2 slope^2.
-// A > 0: between two roots. With t = middle + half sin(angle) half powers of the quadratic are powers of the cosine.
-template <class Visit>
-void between_roots(const Line& line, double middle, double half, const Visit& visit) {
-  const auto angle_of = [&](double t) { return asin(std::clamp((t - middle) / half, -1.0, 1.0)); };
-  std::array<Singularity, 1> pole{Singularity{0, std::numeric_limits<double>::infinity()}};
-  if (line.slope != 0) {
-    const double at = (-line.at_foot / line.slope - middle) / half;  // radius 0, outside the support
-    pole[0] = {std::copysign(std::numbers::pi / 2, at), acosh(std::max(1.0, std::fabs(at)))};
-  }
-  for_each_panel(angle_of(line.t1), angle_of(line.t2), pole, 1, [&](const Panel& panel) {
-    for_each_node(panel, max_kernel_degree, [&](double angle, double weight) {
-      const auto [sine, cosine] = sincos(angle);
-      visit(middle + half * sine, weight * half * cosine);
-    });
-  });
-}
-
-// A <= 0: from a root on, where the radius grows. With t = root + direction w^2 half powers are powers of w.
-template <class Visit>
-void beyond_root(const Line& line, double root, const Visit& visit) {
-  const double direction = line.slope > 0 ? 1 : -1;
-  const double near = direction > 0 ? line.t1 : line.t2, far = direction > 0 ? line.t2 : line.t1;
-  const auto w_of = [&](double t) { return std::sqrt(std::max(0.0, direction * (t - root))); };
-  const Singularity pole{0, std::sqrt(std::fabs(root + line.at_foot / line.slope))};
-  for_each_panel(w_of(near), w_of(far), {&pole, 1}, w_of(far), [&](const Panel& panel) {
-    for_each_node(panel, max_kernel_degree,
-                  [&](double w, double weight) { visit(root + direction * w * w, 2 * weight * w); });
-  });
-}
-
-template <class Visit>
-void integrate_compact(const Line& line, const Kernel& kernel, const Visit& visit) {
-  const double R2 = kernel.shape * kernel.shape;
-  const double A = 1 - R2 * line.slope * line.slope, B = -R2 * line.slope * line.at_foot;
-  const double C = line.h_squared - R2 * line.at_foot * line.at_foot, discriminant = B * B - A * C;
-  if (A > 0) {
-    if (discriminant > 0) between_roots(line, -B / A, std::sqrt(discriminant) / A, visit);
-    return;
-  }
-  // The root on the side of positive radii, in the form without cancellation: C / (-B -+ sqrt).
-  const double root_of = std::sqrt(std::max(0.0, discriminant)), q = -B - std::copysign(root_of, B);
-  const double first = q == 0 ? 0 : C / q, second = A == 0 ? first : q / A;
-  const double root = line.at_foot + line.slope * first >= line.at_foot + line.slope * second ? first : second;
-  beyond_root(line, root, visit);
+// Where the inverse kernel is infinite.
+bool is_on_line(const Line& line, const Kernel& kernel) {
+  return kernel.family == KernelFamily::Inverse && line.h_squared == 0 && line.t1 <= 0 && line.t2 >= 0;
 }
 
 }  // namespace
@@ -106,21 +39,47 @@ SkeletonSample point_field(const PointSkeleton& point, const Vec3d& p, const Ker
 
 template <Derivatives Order>
 SkeletonSample segment_field(const SegmentSkeleton& segment, const Vec3d& p, const Kernel& kernel) {
-  const double length = marrow::length(segment.to - segment.from);
   SkeletonSample sum;
-  if (!(length > 0)) return sum;
-  const UnitVec3 u = UnitVec3::unchecked((segment.to - segment.from) / length);
-  const double foot = dot(p - segment.from, u), slope = (segment.radius_to - segment.radius_from) / length;
-  const Vec3d across = p - segment.from - u * foot;
-  const Line line{-foot, length - foot, length_squared(across), segment.radius_from + slope * foot, slope};
+  if (segment.from == segment.to) return sum;
+  const auto [length, foot, u, across, line] = seen_from(segment, p);
   const Profile profile(kernel, 1);
-  const auto add = [&](double t, double weight) {
-    const double tau = segment.radius_from + slope * (t + foot);
+  integrate_line(line, kernel, [&](double t, double weight) {
+    const double tau = segment.radius_from + line.slope * (t + foot);
     add_source<Order>(profile, across - u * t, tau, weight / (profile.normalisation() * tau), sum);
-  };
-  if (kernel.family == KernelFamily::Cauchy) integrate_cauchy(line, kernel, add);
-  else integrate_compact(line, kernel, add);
+  });
   return sum;
+}
+
+// Second derivatives of k(|v|^2 / tau^2): 2 k' / tau^2 I + 4 k'' / tau^4 v v^T.
+Matrix3 segment_hessian(const SegmentSkeleton& segment, const Vec3d& p, const Kernel& kernel) {
+  Matrix3 sum;
+  if (segment.from == segment.to) return sum;
+  const auto [length, foot, u, across, line] = seen_from(segment, p);
+  if (is_on_line(line, kernel)) return sum;
+  const Profile profile(kernel, 1);
+  integrate_line(line, kernel, [&](double t, double weight) {
+    const double tau = segment.radius_from + line.slope * (t + foot);
+    SkeletonSample part;
+    add_source<Derivatives::Second>(profile, across - u * t, tau, weight / (profile.normalisation() * tau), part);
+    sum += part.si_jacobian * (1 / tau);
+  });
+  return sum;
+}
+
+ShareSample segment_share(const SegmentSkeleton& segment, const Vec3d& p, const Kernel& kernel) {
+  ShareSample share;
+  if (segment.from == segment.to) return share;
+  const auto [length, foot, u, across, line] = seen_from(segment, p);
+  if (is_on_line(line, kernel)) return share;
+  const Profile profile(kernel, 1);
+  integrate_line(line, kernel, [&](double t, double weight) {
+    const double tau = segment.radius_from + line.slope * (t + foot);
+    SkeletonSample part;
+    add_source<Derivatives::First>(profile, across - u * t, tau, weight / (profile.normalisation() * tau), part);
+    share.value += part.value * ((t + foot) / length);
+    share.gradient += part.gradient * ((t + foot) / length);
+  });
+  return share;
 }
 
 template SkeletonSample point_field<Derivatives::ScaleInvariant>(const PointSkeleton&, const Vec3d&, const Kernel&);

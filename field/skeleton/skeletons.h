@@ -31,11 +31,31 @@ SkeletonSample arc_field(const ArcSkeleton&, const Vec3d& p, int family_degree);
 template <Derivatives>
 SkeletonSample distance_segment_field(const SegmentSkeleton&, const Vec3d& p, int family_degree);
 
-/// The same under the Cauchy or the compact kernel (kernel.family is not the inverse one); finite everywhere.
-/// A segment costs some panels of 20 nodes.   [field-maths 1, 2]
+/// Cani and Hornus 2001: (sin a_2 - sin a_1) R^2 / (2 h^2), the integral of 1/r^3 with one radius R all along, that at
+/// the foot of p on the segment (clamped to its ends). For a constant radius it is segment_field with family degree 3;
+/// else it is not an integral, and cutting a segment changes it. grad_S f takes R as constant.   [field-maths 8.1]
+template <Derivatives>
+SkeletonSample cani_hornus_field(const SegmentSkeleton&, const Vec3d& p);
+
+/// Kernel of the smallest scaled distance, under any kernel.   [field-maths 3.2]
+/// A curve whose radius varies may have several nearest places; the field is continuous where they change.
+template <Derivatives>
+SkeletonSample distance_field(const SegmentSkeleton&, const Vec3d& p, const Kernel&);
+template <Derivatives>
+SkeletonSample distance_field(const TriangleSkeleton&, const Vec3d& p, const Kernel&);
+template <Derivatives>
+SkeletonSample distance_field(const ArcSkeleton&, const Vec3d& p, const Kernel&);
+
+/// The integrals under the Cauchy or the compact kernel (kernel.family is not the inverse one); finite everywhere.
+/// A segment costs some panels of 20 nodes, an arc some hundred nodes, a triangle some thousand; under the compact
+/// kernel up to 10^5, adaptive, as the edge of the support may cut it anywhere (to 1e-9).   [field-maths 1, 2]
 template <Derivatives>
 SkeletonSample point_field(const PointSkeleton&, const Vec3d& p, const Kernel&);
 template <Derivatives>
 SkeletonSample segment_field(const SegmentSkeleton&, const Vec3d& p, const Kernel&);
+template <Derivatives>
+SkeletonSample arc_field(const ArcSkeleton&, const Vec3d& p, const Kernel&);
+template <Derivatives>
+SkeletonSample triangle_field(const TriangleSkeleton&, const Vec3d& p, const Kernel&);
 
 }  // namespace marrow

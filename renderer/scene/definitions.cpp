@@ -26,7 +26,12 @@ FieldNode moved_by(FieldNode moved, std::size_t offset) {
   const auto move_list = [&](std::vector<FieldNodeId>& of) {
     for (FieldNodeId& id : of) id = FieldNodeId{id.index() + offset};
   };
-  std::visit(Overloaded{[](Primitive&) {}, [&](Blend& blend) { move_list(blend.of); },
+  const auto move_blend = [&](Blend& blend) {
+    move_list(blend.of);
+    if (auto* steered = std::get_if<AlphaFromField>(&blend.alpha))
+      steered->field = FieldNodeId{steered->field.index() + offset};
+  };
+  std::visit(Overloaded{[](Primitive&) {}, [&](Blend& blend) { move_blend(blend); },
                         [&](Union& all) { move_list(all.of); }, [&](GeneralNode& node) { move_list(node.of); },
                         [&](Transform& transform) { transform.of = FieldNodeId{transform.of.index() + offset}; }},
              moved.what);

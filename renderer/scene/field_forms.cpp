@@ -8,6 +8,7 @@
 #include "field/kernel/inverse_family.h"
 #include "renderer/scene/curve_forms.h"
 #include "renderer/scene/node_forms.h"
+#include "renderer/scene/alpha_forms.h"
 #include "renderer/scene/primitive_forms.h"
 #include "renderer/scene/skeleton_forms.h"
 
@@ -45,12 +46,12 @@ const Table<WrittenKernel>& kernel_table() {
         "kernel", "The kernel of a blend; its degree says how far skeletons feel each other.",
         {kernel_degree_key("inverse", KernelFamily::Inverse, "x^-m of this degree: everything can be rendered with it"),
          kernel_degree_key("cauchy", KernelFamily::Cauchy,
-                           "(1 + scale^2 x^2)^(-m/2), finite on skeletons; `alpha: sum`, `probe` and `slice` only"),
+                           "(1 + scale^2 x^2)^(-m/2), finite on skeletons; `probe` and `slice` only"),
          kernel_degree_key("compact", KernelFamily::Compact,
-                           "(1 - x^2/support^2)^(m/2), 0 beyond; `alpha: sum`, `probe` and `slice` only"),
+                           "(1 - x^2/support^2)^(m/2), 0 beyond; `probe` and `slice` only"),
          key<WrittenKernel>("scale", &WrittenKernel::scale, number(between(0.01, 100)), "of `cauchy`; 1 when left out"),
          key<WrittenKernel>("support", &WrittenKernel::support, number(between(1.01, 100)),
-                            "of `compact`, in radii; 2 when left out")},
+                            "of `compact`, in radii; 2 when left out; below 1.6 for topology control")},
         shape_fits);
     made.info.exactly_one = {"inverse", "cauchy", "compact"};
     return made;
@@ -67,29 +68,13 @@ Form<Kernel> kernel() {
   });
 }
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-
-Form<Alpha> alpha() {
-  static const Alternatives<Alpha> maps("alpha", "", {}, {"direction", "attribute"});
-  enum class Word { Contact, Sum, PerSkeleton };
-  const auto from_word = [](Word word) {
-    if (word == Word::PerSkeleton) return Alpha(AlphaPerSkeleton{});
-    return word == Word::Sum ? Alpha(AlphaSum{}) : Alpha(AlphaContact{});
-  };
-  const auto from_angle = [](double radians) { return Alpha(radians); };
-  Form<Word> word = choice<Word>({{"contact", Word::Contact}, {"sum", Word::Sum}, {"per_skeleton", Word::PerSkeleton}});
-  // What begins like a word is meant as one, so that a slip gets the words as suggestions and not the range of angles.
-  word.recognises = [](const Value& v) { return v.is_scalar() && !v.text.empty() && is_letter(v.text.front()); };
-  return either<Alpha>({mapped<Alpha>(word, from_word), mapped<Alpha>(primitive_alpha(), from_angle), one_of(maps)});
-}
-
 const Table<Blend>& blend_table() {
   static const Table<Blend> table(
       "blend", "Many skeletons as one smooth body with topology control (Zanni, Cani, Gleicher 2015).",
       {key<Blend>("kernel", &Blend::kernel, kernel(), "the kernel; degree 4 when left out"),
-       key<Blend>("alpha", &Blend::alpha, alpha(),
+       key<Blend>("alpha", &Blend::alpha, alpha_form(),
                   "projection angle: `contact` (when left out) blends where skeletons touch, `sum` is the plain sum, "
-                  "`per_skeleton` takes the skeletons' own"),
+                  "`per_skeleton` takes the skeletons' own, a map lets it vary"),
        key<Blend>("cavity", &Blend::cavity, boolean(), "whether hollows that close are corrected too"),
        key<Blend>("projection", &Blend::projection,
                   choice<Projection>({{"paper", Projection::Paper}, {"exact", Projection::Exact}}),
@@ -223,6 +208,7 @@ std::vector<const TableInfo*> field_tables() {
                                  &transform_table().info, &rotation_table().info})
     tables.push_back(table);
   for (const TableInfo* table : general_node_tables()) tables.push_back(table);
+  for (const TableInfo* table : alpha_tables()) tables.push_back(table);
   return tables;
 }
 

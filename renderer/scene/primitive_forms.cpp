@@ -153,7 +153,9 @@ Form<std::vector<double>> radii(std::size_t min, std::size_t max, const std::str
 }
 
 Form<SkeletonModel> skeleton_model() {
-  return choice<SkeletonModel>({{"integral", SkeletonModel::Integral}, {"distance", SkeletonModel::Distance}});
+  return choice<SkeletonModel>({{"integral", SkeletonModel::Integral},
+                                {"distance", SkeletonModel::Distance},
+                                {"cani_hornus", SkeletonModel::CaniHornus}});
 }
 
 Form<double> primitive_alpha() { return radians(between(-1, 1.57079632679489661923)); }

@@ -90,7 +90,7 @@ TEST(Profile, CompactKernelsEndAtTheirSupport) {
   EXPECT_GT(segment_field<second>(s, {0.5, 0, 0}, kernel).value, 1);
 }
 
-TEST(Profile, BlendsOnlyAsThePlainSumAndOfPointsAndIntegralSegments) {
+TEST(Profile, ItsBlendsTakeAnglesFromZeroOn) {
   const auto result_of = [](Alpha alpha, SkeletonModel model, Kernel kernel) {
     FieldDescription description;
     Primitive primitive;
@@ -108,9 +108,15 @@ TEST(Profile, BlendsOnlyAsThePlainSumAndOfPointsAndIntegralSegments) {
   ASSERT_TRUE(good);
   EXPECT_FALSE(untraceable_part(good->parts()[0].blend).empty());
   EXPECT_GT(value(*good, {0.5, 0, 0}), 1);
-  EXPECT_FALSE(result_of(AlphaContact{}, SkeletonModel::Integral, cauchy));
-  EXPECT_FALSE(result_of(0.8, SkeletonModel::Integral, cauchy));
-  EXPECT_FALSE(result_of(AlphaSum{}, SkeletonModel::Distance, cauchy));
+  const auto contact = result_of(AlphaContact{}, SkeletonModel::Integral, cauchy);
+  ASSERT_TRUE(contact);
+  EXPECT_TRUE(contact->warnings().empty());
+  EXPECT_TRUE(result_of(0.8, SkeletonModel::Integral, cauchy));
+  EXPECT_FALSE(result_of(-0.1, SkeletonModel::Integral, cauchy));
+  const auto wide = result_of(AlphaContact{}, SkeletonModel::Integral, Kernel{KernelFamily::Compact, 4, 2});
+  ASSERT_TRUE(wide);
+  EXPECT_EQ(wide->warnings().size(), 1u);
+  EXPECT_TRUE(result_of(AlphaSum{}, SkeletonModel::Distance, cauchy));
   EXPECT_FALSE(result_of(AlphaSum{}, SkeletonModel::Integral, compact));
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -123,6 +124,26 @@ TEST(Reference, AlphaPerSkeleton) {
       blend.points.alphas.push_back(entry.at("alpha_i")[i]);
     }
     const double error = std::fabs(alpha_at(blend, {0, 0, 0}).value - entry.at("alpha_eq14").get<double>());
+    EXPECT_LE(error, 1e-13) << entry.at("id");
+    worst = std::max(worst, error);
+    ++checked;
+  }
+  std::cout << "  " << checked << " values, worst error " << worst << '\n';
+  EXPECT_EQ(checked, 40);
+}
+
+TEST(Reference, AlphaByDirection) {
+  int checked = 0;
+  double worst = 0;
+  for (const json& entry : reference().at("alpha")) {
+    std::vector<Strand> strands;
+    for (std::size_t i = 0; i < entry.at("f").size(); ++i)
+      strands.push_back({.field = entry.at("f")[i],
+                         .field_gradient = {},
+                         .direction = vector_of(entry.at("u")[i]),
+                         .direction_jacobian = {},
+                         .bounds = {entry.at("alpha_min"), entry.at("alpha_max")}});
+    const double error = std::fabs(directional_alpha(strands, false).value - entry.at("alpha_eq15").get<double>());
     EXPECT_LE(error, 1e-13) << entry.at("id");
     worst = std::max(worst, error);
     ++checked;

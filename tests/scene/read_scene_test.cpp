@@ -218,6 +218,41 @@ TEST_F(ReadScene, SamplesOfTheRepositoryLoad) {
 
 TEST_F(ReadScene, AByteOrderMarkIsNoPartOfTheText) { EXPECT_TRUE(read("\xEF\xBB\xBFmarrow: 1\n")); }
 
+TEST_F(ReadScene, KnowsEveryRuleForTheAngle) {
+  const auto scene = read(R"(marrow: 1
+defs:
+  hot: {point: {at: [0, 0, 0]}}
+objects:
+  - field: {blend: {alpha: {direction: [0.1, 0.5]}, of: [{use: hot}]}}
+  - field: {blend: {alpha: {direction: {min: 0.1, max: 0.5}}, of: [{point: {at: [0, 0, 0], alpha_bounds: [0.2, 0.3]}}]}}
+  - field:
+      blend:
+        alpha: {attribute: heat, from: [0, 10], to: [0.2, 1.2]}
+        of: [{segment: {from: [0, 0, 0], to: [1, 0, 0], attributes: {heat: [1, 9], other: 3}}}]
+  - field: {blend: {of: [{use: hot}], alpha: {field: {use: hot}, from: [0, 10], to: [0.2, 1.2]}}}
+  - field: {blend: {alpha: {contact: {density: false}}, of: [{use: hot}]}}
+)");
+  ASSERT_TRUE(scene) << render_all(scene.why(), record.sources);
+  const auto field = [&](std::size_t i) -> const FieldDescription& {
+    return std::get<FieldDescription>(scene->objects[i].shape);
+  };
+  const auto blend = [&](std::size_t i) -> const Blend& { return std::get<Blend>(field(i)[field(i).root].what); };
+  for (const std::size_t i : {0u, 1u}) {
+    EXPECT_EQ(std::get<AlphaDirection>(blend(i).alpha).least, 0.1);
+    EXPECT_EQ(std::get<AlphaDirection>(blend(i).alpha).most, 0.5);
+  }
+  EXPECT_EQ(std::get<Primitive>(field(1)[blend(1).of[0]].what).alpha_bounds, (std::array{0.2, 0.3}));
+  EXPECT_EQ(std::get<AlphaAttribute>(blend(2).alpha).name, "heat");
+  EXPECT_EQ(std::get<AlphaAttribute>(blend(2).alpha).ramp, (AlphaRamp{{0, 10}, {0.2, 1.2}}));
+  EXPECT_EQ(std::get<Primitive>(field(2)[blend(2).of[0]].what).attributes,
+            (std::vector<Attribute>{{"heat", {1, 9}}, {"other", {3}}}));
+  const FieldNodeId steering = std::get<AlphaFromField>(blend(3).alpha).field;
+  ASSERT_TRUE(steering.valid() && steering < field(3).root);
+  EXPECT_TRUE(std::holds_alternative<Primitive>(field(3)[steering].what));
+  EXPECT_TRUE(std::get<AlphaLocalContact>(blend(4).alpha).radii);
+  EXPECT_FALSE(std::get<AlphaLocalContact>(blend(4).alpha).density);
+}
+
 TEST_F(ReadScene, KnowsEverySkeletonAndKernel) {
   const auto scene = read(R"(marrow: 1
 objects:

@@ -1,0 +1,24 @@
+// A projection angle that varies in space.
+#pragma once
+
+#include "field/math/vec3.h"
+
+namespace marrow {
+
+/// Radians, and their gradient.
+struct AlphaSample {
+  double value = 0;
+  Vec3d gradient{};
+};
+
+/// An angle given at every point, in the coordinates of the blend; immutable.
+class AlphaSource {
+ public:
+  AlphaSource() = default;
+  AlphaSource(const AlphaSource&) = delete;
+  AlphaSource& operator=(const AlphaSource&) = delete;
+  virtual ~AlphaSource() = default;
+  virtual AlphaSample at(const Vec3d& p) const = 0;
+};
+
+}  // namespace marrow

@@ -1,0 +1,66 @@
+// The correction operator for kernels that are finite on their skeletons: Cauchy and compact.
+#pragma once
+
+#include <optional>
+
+#include "field/blend/correction_partials.h"
+#include "field/description/field_node.h"
+#include "field/kernel/bounded_curve.h"
+
+namespace marrow {
+
+/// C(f, G) as of Correction, with the curve of BoundedCurve: the outer branch, continued level beyond its top (f*, g*).
+///
+/// Where it holds
+///   - C is continuous, and isotone in f and in G, for all alpha in [0, pi/2]. C <= max(f, f*).
+///   - A lone infinite skeleton (or point) keeps its field where f <= f*: its surface, if f* >= 1, that is
+///     s >= 1/sqrt n, R <= sqrt n. (With cavity, compact: f <= 0.85 f*.)
+///   - Beyond f* the operator goes on: two touching skeletons have f = 2 between them, which may exceed f*. The field
+///     next to a skeleton is then lowered too, and it stays solid if C(f_max, 0) > 1: solid_alone().
+///   - Two equal skeletons join exactly when they touch for contact_alpha() of the kernel, if it exists: if even
+///     alpha = 0 joins them before they touch, see there.
+///   - alpha < 0 is not defined (where the level part begins the line misses the curve).
+/// Projection::Paper moves to the chord (eq. 12) for points below the curve; above it, where the chord of a concave
+/// curve is not isotone, and under Projection::Exact everywhere, to the curve. C is continuously differentiable across
+/// the curve.
+///
+/// Cavity: two equal skeletons 2a apart have f = 2 k(r), G = 2 h |k'(r)| / r at height h over the middle, r^2 =
+/// a^2 + h^2. With B = a^2 + 1/s^2 (Cauchy) or B = R^2 - a^2 (compact) their curve M is steepest as -tan(alpha) where
+///   cos(alpha) (B - n h^2) = sin(alpha) h (B +- h^2),        + Cauchy, - compact;
+/// for 1/s = 0 this is the cubic of the inverse kernel (field-maths 5). k is analytic in r^2, and all is used for
+/// r^2 < 0 and a^2 < 0 too (f above twice the largest field of one skeleton), so that nothing switches there.
+class BoundedCorrection {
+ public:
+  /// The family is Cauchy or compact; alpha in [0, pi/2].
+  BoundedCorrection(const Kernel&, double alpha, bool cavity, Projection);
+
+  double value(double f, double G) const;
+  CorrectionPartials partials(double f, double G) const;
+  bool in_cavity_branch(double f, double G) const;
+  /// Whether C > 1 all the way from the surface of a lone point to its middle.
+  bool solid_alone() const;
+
+  const BoundedCurve& curve() const { return curve_; }
+
+ private:
+  struct Slopes {
+    double value, df, dG, dalpha;
+  };
+  struct TwoSkeletons;
+  struct Pair;
+
+  double projected(double f, double G) const;
+  Slopes projected_slopes(double f, double G) const;
+  Pair pair_at(double f, double G) const;
+  double steepness(double h, double B) const;
+  double critical_height(double B) const;
+  std::optional<TwoSkeletons> behind_critical_point(double f, double G) const;
+
+  Kernel kernel_;
+  BoundedCurve curve_;
+  double sin_, cos_;
+  bool cavity_;
+  Projection projection_;
+};
+
+}  // namespace marrow

@@ -1,0 +1,182 @@
+// One loop over the primitives for each rule of the angle.
+#include "field/blend/gather.h"
+
+#include <cmath>
+#include <vector>
+
+#include "field/blend/primitive_visit.h"
+#include "field/math/elementary.h"
+#include "field/skeleton/shares.h"
+
+namespace marrow {
+namespace {
+
+bool is_usable(const SkeletonSample& sum) { return sum.value > 0 && sum.value <= field_ceiling; }
+
+Kernel kernel_of(const BlendField& blend) { return {blend.kernel, blend.degree, blend.kernel_shape}; }
+
+// f_i alpha_i of a primitive, with linear angles weighted along it.
+struct Angles {
+  double value = 0;
+  Vec3d gradient{};
+  void add(const BlendField& blend, const SkeletonSample& s, const auto& list, std::size_t i, const Vec3d& p) {
+    value += s.value * list.alphas[i];
+    gradient += s.gradient * list.alphas[i];
+    if (list.alphas_to.empty() || list.alphas_to[i] == list.alphas[i] || !is_usable(s)) return;
+    if constexpr (requires { segment_share(list.skeletons[i], p, kernel_of(blend)); }) {
+      const ShareSample share = segment_share(list.skeletons[i], p, kernel_of(blend));
+      const double rise = list.alphas_to[i] - list.alphas[i];
+      value += share.value * rise;
+      gradient += share.gradient * rise;
+    }
+  }
+};
+
+// grad (A / f) = (grad A - alpha grad f) / f
+template <Derivatives Order>
+Gathered per_skeleton(const BlendField& blend, const Vec3d& p) {
+  Gathered all;
+  Angles angles;
+  for_each_primitive<Order>(blend, p, [&](const SkeletonSample& s, const auto& list, std::size_t i) {
+    all.sum += s;
+    angles.add(blend, s, list, i, p);
+  });
+  if (!is_usable(all.sum)) return all;
+  const double mean = angles.value / all.sum.value;
+  all.alpha = {.value = mean, .gradient = (angles.gradient - all.sum.gradient * mean) / all.sum.value};
+  return all;
+}
+
+// A direction at a point and how it turns. Segments have one; points and triangles have none.
+struct Direction {
+  Vec3d u;
+  Matrix3 jacobian;
+};
+Direction direction_of(const PointSkeleton&, const Vec3d&) { return {}; }
+Direction direction_of(const TriangleSkeleton&, const Vec3d&) { return {}; }
+Direction direction_of(const SegmentSkeleton& s, const Vec3d&) { return {normalize(s.to - s.from).vec(), {}}; }
+// Of the circle where p is nearest to it: axis x v / |axis x v|.
+Direction direction_of(const ArcSkeleton& s, const Vec3d& p) {
+  const Vec3d axis = cross(s.axis1, s.axis2), around = cross(axis, p - s.center);
+  const double radius = length(around);
+  if (!(radius > 0)) return {};
+  const Vec3d u = around / radius;
+  // rows of [axis x], less their part along u
+  Matrix3 turn{{Vec3d{0, -axis.z, axis.y}, Vec3d{axis.z, 0, -axis.x}, Vec3d{-axis.y, axis.x, 0}}};
+  const Vec3d along = turn.transposed_times(u);
+  for (std::size_t k = 0; k < 3; ++k) turn.rows[k] = (turn.rows[k] - along * u[k]) / radius;
+  return {u, turn};
+}
+
+template <Derivatives Order>
+Gathered by_direction(const BlendField& blend, const Vec3d& p) {
+  Gathered all;
+  std::vector<Strand> strands(blend.direction_bounds.size());
+  for (std::size_t i = 0; i < strands.size(); ++i) strands[i].bounds = blend.direction_bounds[i];
+  for_each_primitive<Order>(blend, p, [&](const SkeletonSample& s, const auto& list, std::size_t i) {
+    all.sum += s;
+    Strand& strand = strands[list.strands[i]];
+    const auto [u, jacobian] = direction_of(list.skeletons[i], p);
+    strand.field += s.value;
+    strand.field_gradient += s.gradient;
+    strand.direction += u * s.value;
+    if constexpr (Order >= Derivatives::First)
+      strand.direction_jacobian += Matrix3::outer(u, s.gradient) + jacobian * s.value;
+  });
+  if (is_usable(all.sum)) all.alpha = directional_alpha(strands, Order >= Derivatives::First);
+  return all;
+}
+
+double mean_radius(const PointSkeleton& s) { return s.radius; }
+double mean_radius(const SegmentSkeleton& s) { return std::sqrt(s.radius_from) * std::sqrt(s.radius_to); }
+double mean_radius(const ArcSkeleton& s) { return std::sqrt(s.radius_from) * std::sqrt(s.radius_to); }
+double mean_radius(const TriangleSkeleton& s) { return (s.radii[0] + s.radii[1] + s.radii[2]) / 3; }
+
+// Sums of f_i, f_i l_i and f_i l_i^2, with l_i the logarithm of a radius over that of the first primitive.
+class Spread {
+ public:
+  void add(const SkeletonSample& s, double radius) {
+    if (first_ == 0) first_ = radius;
+    const double l = log(radius / first_);
+    linear_ += s.value * l;
+    square_ += s.value * (l * l);
+    linear_gradient_ += s.gradient * l;
+    square_gradient_ += s.gradient * (l * l);
+  }
+  void tell(const SkeletonSample& sum, Neighbourhood& place) const {
+    const double mean = linear_ / sum.value, mean_square = square_ / sum.value;
+    const Vec3d mean_gradient = (linear_gradient_ - sum.gradient * mean) / sum.value;
+    place.spread = 4 * (mean_square - mean * mean);
+    place.spread_gradient =
+        ((square_gradient_ - sum.gradient * mean_square) / sum.value - mean_gradient * (2 * mean)) * 4.0;
+  }
+
+ private:
+  double first_ = 0, linear_ = 0, square_ = 0;
+  Vec3d linear_gradient_{}, square_gradient_{};
+};
+
+SkeletonSample near_field_of(const auto& skeleton, const Vec3d& p) {
+  constexpr int m = LocalContact::near_degree;
+  if constexpr (requires { segment_field<Derivatives::First>(skeleton, p, m); })
+    return segment_field<Derivatives::First>(skeleton, p, m);
+  else if constexpr (requires { point_field<Derivatives::First>(skeleton, p, m); })
+    return point_field<Derivatives::First>(skeleton, p, m);
+  else if constexpr (requires { triangle_field<Derivatives::First>(skeleton, p, m); })
+    return triangle_field<Derivatives::First>(skeleton, p, m);
+  else return arc_field<Derivatives::First>(skeleton, p, m);
+}
+
+template <Derivatives Order>
+Gathered by_local_contact(const BlendField& blend, const Vec3d& p) {
+  Gathered all;
+  Spread spread;
+  SkeletonSample near;
+  const LocalContact& rule = *blend.local_contact;
+  for_each_primitive<Order>(blend, p, [&](const SkeletonSample& s, const auto& list, std::size_t i) {
+    all.sum += s;
+    if (rule.adapts_to_radii()) spread.add(s, mean_radius(list.skeletons[i]));
+    if (rule.adapts_to_density()) near += near_field_of(list.skeletons[i], p);
+  });
+  if (!is_usable(all.sum)) return all;
+  Neighbourhood place{.field = all.sum.value,
+                      .field_gradient = all.sum.gradient,
+                      .spread_gradient = {},
+                      .near_field = near.value,
+                      .near_gradient = near.gradient};
+  if (rule.adapts_to_radii()) spread.tell(all.sum, place);
+  all.alpha = rule.at(place);
+  return all;
+}
+
+template <Derivatives Order>
+Gathered with_angle(const BlendField& blend, const Vec3d& p, const AlphaSample& alpha) {
+  Gathered all{.sum = {}, .alpha = alpha};
+  for_each_primitive<Order>(blend, p, [&](const SkeletonSample& s, const auto&, std::size_t) { all.sum += s; });
+  return all;
+}
+
+template <Derivatives Order>
+Gathered gather_by_rule(const BlendField& blend, const Vec3d& p) {
+  if (blend.alpha_per_skeleton) return per_skeleton<Order>(blend, p);
+  if (!blend.direction_bounds.empty()) return by_direction<Order>(blend, p);
+  if (blend.local_contact) return by_local_contact<Order>(blend, p);
+  if (blend.alpha_source) return with_angle<Order>(blend, p, blend.alpha_source->at(p));
+  return with_angle<Order>(blend, p, {.value = blend.alpha});
+}
+
+}  // namespace
+
+template <Derivatives Order>
+Gathered gather(const BlendField& blend, const Vec3d& p) {
+  Gathered all = gather_by_rule<Order>(blend, p);
+  if (!is_usable(all.sum)) all.alpha = {.value = blend.alpha};
+  if (!(all.sum.value <= field_ceiling)) all.sum = SkeletonSample::on_skeleton();
+  return all;
+}
+
+template Gathered gather<Derivatives::ScaleInvariant>(const BlendField&, const Vec3d&);
+template Gathered gather<Derivatives::First>(const BlendField&, const Vec3d&);
+template Gathered gather<Derivatives::Second>(const BlendField&, const Vec3d&);
+
+}  // namespace marrow

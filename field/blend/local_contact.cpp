@@ -1,0 +1,166 @@
+// A table over the spread of radii from pairs of balls that touch, and one number from the torus.
+#include "field/blend/local_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "field/blend/contact.h"
+#include "field/blend/correction.h"
+#include "field/kernel/inverse_family.h"
+#include "field/math/elementary.h"
+#include "field/skeleton/skeletons.h"
+
+namespace marrow {
+namespace {
+
+// The table runs over y = s / (1 + s), s the spread, up to a ratio of radii of e^3.
+constexpr double last_y = 0.9;
+
+constexpr int bisections = 50;
+
+SkeletonSample field_of(const PointSkeleton& s, const Vec3d& p, const Kernel& kernel) {
+  return kernel.family == KernelFamily::Inverse ? point_field<Derivatives::ScaleInvariant>(s, p, kernel.degree)
+                                                : point_field<Derivatives::ScaleInvariant>(s, p, kernel);
+}
+
+// Two balls of radii 1 and `ratio` that touch.
+struct TouchingPair {
+  const Kernel& kernel;
+  bool cavity;
+  Projection projection;
+  double contact, ratio;
+
+  // C on the line of the centres, at u |u| from the point of touch in radii of the ball on that side: the valley is as
+  // narrow as the smaller ball. The angle is `extra` above contact where f_1 = f_2, and falls off with the spread, that
+  // is with 4 f_1 f_2 / f^2.
+  double corrected(double u, double extra) const {
+    const double at = u * std::fabs(u);
+    const Vec3d p{at < 0 ? 1 + at : 1 + at * ratio, 0, 0};
+    SkeletonSample sum = field_of({{0, 0, 0}, 1}, p, kernel);
+    const SkeletonSample other = field_of({{1 + ratio, 0, 0}, ratio}, p, kernel);
+    const double share = 4 * sum.value * other.value / ((sum.value + other.value) * (sum.value + other.value));
+    sum += other;
+    return Correction(kernel, contact + extra * share, cavity, projection).value(sum.value, length(sum.si_gradient));
+  }
+
+  // Scan, then ternary search: C has one valley between the balls.
+  double least(double extra) const {
+    constexpr int samples = 24;
+    constexpr double reach = 0.8;
+    double best = 0, value = corrected(0, extra);
+    for (int i = -samples; i <= samples; ++i) {
+      const double at = reach * i / samples, here = corrected(at, extra);
+      if (here < value) {
+        value = here;
+        best = at;
+      }
+    }
+    double low = best - reach / samples, high = best + reach / samples;
+    for (int i = 0; i < 24; ++i) {
+      const double a = low + (high - low) / 3, b = high - (high - low) / 3;
+      (corrected(a, extra) < corrected(b, extra) ? high : low) = corrected(a, extra) < corrected(b, extra) ? b : a;
+    }
+    return std::min(value, corrected((low + high) / 2, extra));
+  }
+
+  double extra_angle() const {
+    double low = 0, high = std::numbers::pi / 2 - contact;
+    for (int i = 0; i < bisections; ++i) {
+      const double middle = low + (high - low) / 2;
+      (least(middle) < 1 ? low : high) = middle;
+    }
+    return high;
+  }
+};
+
+}  // namespace
+
+LocalContact::LocalContact(const Kernel& kernel, bool cavity, Projection projection, bool radii, bool density)
+    : kernel_(kernel),
+      cavity_(cavity),
+      projection_(projection),
+      radii_(radii),
+      density_(density),
+      contact_(contact_alpha(kernel, cavity, projection)),
+      least_(contact_) {
+  if (radii_) make_table();
+  if (!density_) return;
+  const double in_ring = 2 * std::numbers::pi / curve_normalisation(kernel_.degree);
+  double low = projection == Projection::Exact ? 0 : -1, high = contact_;
+  for (int i = 0; i < bisections; ++i) {
+    const double middle = low + (high - low) / 2;
+    (Correction(kernel_, middle, cavity_, projection_).value(in_ring, 0) < 1 ? low : high) = middle;
+  }
+  least_ = high;
+  const double beyond_pair = crowd_of_ring() - 2;
+  dense_factor_ = (least_ - contact_) / (beyond_pair * beyond_pair);
+}
+
+// In the middle of a ring of radius 1 and thickness 1: f = 2 pi / N(n), the near field 2 pi / N(20).
+double LocalContact::crowd_of_ring() const {
+  Neighbourhood ring;
+  ring.field = 2 * std::numbers::pi / curve_normalisation(kernel_.degree);
+  ring.near_field = 2 * std::numbers::pi / curve_normalisation(near_degree);
+  return crowd_at(ring).value;
+}
+
+void LocalContact::make_table() {
+  constexpr double step = last_y / (entries - 1);
+  for (std::size_t i = 1; i < entries; ++i) {
+    const double y = step * static_cast<double>(i), spread = y / (1 - y);
+    angle_[i] = TouchingPair{kernel_, cavity_, projection_, contact_, exp(-std::sqrt(spread))}.extra_angle();
+  }
+  for (std::size_t i = 0; i < entries; ++i) {
+    const std::size_t before = i == 0 ? 0 : i - 1, after = i + 1 == entries ? i : i + 1;
+    slope_[i] = (angle_[after] - angle_[before]) / (step * static_cast<double>(after - before));
+  }
+  slope_[entries - 1] = 0;  // level beyond
+}
+
+// Cubic pieces over y, level beyond the last entry.
+AlphaSample LocalContact::unequal(double spread, const Vec3d& gradient) const {
+  constexpr double step = last_y / (entries - 1);
+  const double y = spread / (1 + spread);
+  if (!(y < last_y)) return {.value = angle_.back()};
+  const auto i = static_cast<std::size_t>(y / step);
+  const double t = y / step - static_cast<double>(i), a = angle_[i], b = angle_[i + 1];
+  const double rise = b - a, first = slope_[i] * step, second = slope_[i + 1] * step;
+  const double bend = 3 * rise - 2 * first - second, twist = first + second - 2 * rise;
+  const double by_y = (first + t * (2 * bend + t * 3 * twist)) / step;
+  return {.value = a + t * (first + t * (bend + t * twist)),
+          .gradient = gradient * (by_y / ((1 + spread) * (1 + spread)))};
+}
+
+// crowd = (f e^(n-1))^((m-1)/(m-n)), e = near^(-1/(m-1)), m the near degree: k equal points give k.
+AlphaSample LocalContact::crowd_at(const Neighbourhood& at) const {
+  constexpr double m = near_degree;
+  const double n = kernel_.degree, share = (n - 1) / (m - 1), exponent = (m - 1) / (m - n);
+  // below, quotients of the near field lose their digits; that far away C no longer depends on the angle
+  constexpr double smallest_near_field = 1e-250;
+  if (!(at.near_field > smallest_near_field && at.near_field <= field_ceiling && at.field > 0)) return {.value = 1};
+  const double crowd = pow(at.field * pow(at.near_field, -share), exponent);
+  const Vec3d relative = at.field_gradient / at.field - at.near_gradient * (share / at.near_field);
+  return {.value = crowd, .gradient = relative * (crowd * exponent)};
+}
+
+AlphaSample LocalContact::at(const Neighbourhood& place) const {
+  AlphaSample alpha{.value = contact_};
+  if (radii_) {
+    const AlphaSample more = unequal(std::max(0.0, place.spread), place.spread_gradient);
+    alpha.value += more.value;
+    alpha.gradient += more.gradient;
+  }
+  if (density_) {
+    const AlphaSample crowd = crowd_at(place);
+    const double beyond_pair = crowd.value - 2;
+    if (beyond_pair > 0) {
+      alpha.value += dense_factor_ * beyond_pair * beyond_pair;
+      alpha.gradient += crowd.gradient * (2 * dense_factor_ * beyond_pair);
+    }
+    if (!(alpha.value > least_)) return {.value = least_};
+  }
+  return alpha;
+}
+
+}  // namespace marrow

@@ -1,0 +1,59 @@
+// Evaluates each primitive of a blend once; internal to blend/.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+
+#include "field/blend/blend_field.h"
+#include "field/skeleton/skeletons.h"
+
+namespace marrow {
+
+/// Calls visit(sample, list, i) for each item of a list, where a strand of a distance list is one item: i is the one
+/// with the largest value.
+template <class List, class Field, class Visit>
+void visit_strands(const List& list, const Field& field, const Visit& visit) {
+  for (std::size_t i = 0; i < list.size();) {
+    SkeletonSample largest = field(list.skeletons[i]);
+    std::size_t at = i;
+    const std::size_t first = i++;
+    for (; !list.strands.empty() && i < list.size() && list.strands[i] == list.strands[first]; ++i) {
+      const SkeletonSample other = field(list.skeletons[i]);
+      if (!(other.value > largest.value)) continue;
+      largest = other;
+      at = i;
+    }
+    visit(largest, list, at);
+  }
+}
+
+/// Calls visit(sample, list, i) for each primitive.
+template <Derivatives Order, class Visit>
+void for_each_primitive(const BlendField& blend, const Vec3d& p, const Visit& visit) {
+  const int n = blend.degree;
+  const auto all = [&](const auto& list, const auto& field) {
+    for (std::size_t i = 0; i < list.size(); ++i) visit(field(list.skeletons[i]), list, i);
+  };
+  const Kernel kernel{blend.kernel, n, blend.kernel_shape};
+  if (blend.kernel == KernelFamily::Inverse) {
+    all(blend.points, [&](const PointSkeleton& s) { return point_field<Order>(s, p, n); });
+    all(blend.segments, [&](const SegmentSkeleton& s) { return segment_field<Order>(s, p, n); });
+    visit_strands(
+        blend.distance_segments, [&](const SegmentSkeleton& s) { return distance_segment_field<Order>(s, p, n); },
+        visit);
+    all(blend.cani_hornus_segments, [&](const SegmentSkeleton& s) { return cani_hornus_field<Order>(s, p); });
+    all(blend.triangles, [&](const TriangleSkeleton& s) { return triangle_field<Order>(s, p, n); });
+    all(blend.arcs, [&](const ArcSkeleton& s) { return arc_field<Order>(s, p, n); });
+  } else {
+    all(blend.points, [&](const PointSkeleton& s) { return point_field<Order>(s, p, kernel); });
+    all(blend.segments, [&](const SegmentSkeleton& s) { return segment_field<Order>(s, p, kernel); });
+    visit_strands(
+        blend.distance_segments, [&](const SegmentSkeleton& s) { return distance_field<Order>(s, p, kernel); }, visit);
+    all(blend.triangles, [&](const TriangleSkeleton& s) { return triangle_field<Order>(s, p, kernel); });
+    all(blend.arcs, [&](const ArcSkeleton& s) { return arc_field<Order>(s, p, kernel); });
+  }
+  all(blend.distance_triangles, [&](const TriangleSkeleton& s) { return distance_field<Order>(s, p, kernel); });
+  all(blend.distance_arcs, [&](const ArcSkeleton& s) { return distance_field<Order>(s, p, kernel); });
+}
+
+}  // namespace marrow

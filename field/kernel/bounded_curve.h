@@ -1,0 +1,45 @@
+// The reference curve of the Cauchy and the compact kernel, which are finite on their skeletons.
+#pragma once
+
+#include "field/description/field_node.h"
+
+namespace marrow {
+
+/// The curve g on which every isolated infinite skeleton of such a kernel lies, |grad_S f| = g(f), over v in [0, 1]:
+///   f = f_max v^p,   g = g_0 sqrt(1 - v) v^(e/2)
+///   Cauchy   v = 1 / (1 + s^2 x^2),  p = (n-1)/2, e = n,   f_max = (1 + s^2)^p,     g_0 = (n-1) s f_max
+///   compact  v = 1 - x^2 / R^2,      p = (n+1)/2, e = n-1, f_max = (1 - 1/R^2)^-p,  g_0 = (n+1) f_max / R
+/// with x = distance / radius. g rises to its top at v* = e / (e+1) (s x = 1/sqrt n, x = R/sqrt n) and returns to 0 on
+/// the skeleton, so that it has two branches. Only the outer one (f <= f*) tells a lone skeleton from a sum.
+/// Here g goes on beyond f* at the height of its top: continuous, with a continuous slope, and never falling, which is
+/// what a projection needs (field-maths 1 leaves open what lies beyond).
+class BoundedCurve {
+ public:
+  /// Precondition: the family is not the inverse one, the shape is valid.
+  explicit BoundedCurve(const Kernel&);
+
+  double largest_field() const { return f_max_; }  ///< on the skeleton
+  double top_field() const { return f_top_; }      ///< f*
+  double top() const { return g_top_; }            ///< g(f*)
+
+  /// f >= 0. Continued beyond f*.
+  double at(double f) const;
+  /// |grad_S f| of a lone skeleton, on both branches: not continued.   Precondition: f <= largest_field().
+  double alone_at(double f) const { return height_at(parameter(f)); }
+  double slope(double f) const;
+  /// x_H: the f <= f* at which the curve has height G, f* for all G above the top.
+  double inverse(double G) const;
+  /// (g(f) - G) / (f - inverse(G)) for G <= g(f): the slope of the chord, without cancellation near the curve.
+  double chord_slope(double f, double G, double x_H) const;
+  /// The x with g(x) c + x s = height; c, s >= 0, not both 0. Where c = 1, s = 0 and the height is above the top: f*.
+  double on_line(double c, double s, double height) const;
+
+ private:
+  double parameter(double f) const;
+  double height_at(double v) const;
+
+  int e_;
+  double p_, f_max_, g_0_, v_top_, f_top_, g_top_;
+};
+
+}  // namespace marrow

@@ -1,0 +1,28 @@
+// A projection angle from the value of a field.
+#pragma once
+
+#include <utility>
+
+#include "field/blend/alpha_sample.h"
+#include "field/program/field_program.h"
+
+namespace marrow {
+
+class RampedField : public AlphaSource {
+ public:
+  /// The program is in the coordinates of the blend that it steers.
+  RampedField(FieldProgram program, const AlphaRamp& ramp) : program_(std::move(program)), ramp_(ramp) {}
+
+  AlphaSample at(const Vec3d& p) const override {
+    const FieldSample s = evaluate(program_, p);
+    const double share = (s.value - ramp_.from[0]) / (ramp_.from[1] - ramp_.from[0]);
+    const double slope = share > 0 && share < 1 ? (ramp_.to[1] - ramp_.to[0]) / (ramp_.from[1] - ramp_.from[0]) : 0;
+    return {.value = ramp_(s.value), .gradient = slope == 0 ? Vec3d{} : s.gradient * slope};
+  }
+
+ private:
+  FieldProgram program_;
+  AlphaRamp ramp_;
+};
+
+}  // namespace marrow

@@ -1,0 +1,205 @@
+// Fields of the smallest scaled distance e = min |p - q| / radius(q), for any skeleton and kernel.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+
+#include "field/kernel/profile.h"
+#include "field/skeleton/arc_view.h"
+#include "field/skeleton/skeletons.h"
+
+namespace marrow {
+namespace {
+
+// The place q of a skeleton with the smallest scaled distance, and how it and its radius move with p: 0 at ends and
+// corners, where it stays.
+struct Nearest {
+  Vec3d at;
+  double radius;
+  Matrix3 moves{};
+  Vec3d radius_gradient{};
+
+  double scaled_squared(const Vec3d& p) const { return length_squared(p - at) / (radius * radius); }
+};
+
+// f = k(y), y = |v|^2 / tau^2. As e is stationary at q, grad y = 2 v / tau^2; in the Jacobian of
+// grad_S f = 2 k'(y) v / tau place and radius move.
+template <Derivatives Order>
+SkeletonSample sample_at(const Nearest& q, const Vec3d& p, const Kernel& kernel) {
+  const Vec3d v = p - q.at;
+  const double tau = q.radius;
+  if (kernel.family == KernelFamily::Inverse && v == Vec3d{}) return SkeletonSample::on_skeleton();
+  const Profile profile(kernel, 0);
+  const auto [value, slope, curvature] = profile.at(q.scaled_squared(p));
+  const double k = 2 * slope / profile.normalisation();
+  SkeletonSample s;
+  s.value = value / profile.normalisation();
+  if (!(s.value <= field_ceiling)) return SkeletonSample::on_skeleton();
+  if constexpr (Order >= Derivatives::First) s.gradient = v * (k / (tau * tau));
+  s.si_gradient = v * (k / tau);
+  if constexpr (Order >= Derivatives::Second)
+    s.si_jacobian =
+        Matrix3::outer(v, v) * (4 * curvature / (profile.normalisation() * tau * tau * tau)) +
+        (Matrix3::scaled_identity(1) + q.moves * -1.0 + Matrix3::outer(v, q.radius_gradient) * (-1 / tau)) * (k / tau);
+  return s;
+}
+
+// Along a curve q(t) with q' and q'' and radius slope, where ln e = ln |p - q| - ln tau is stationary at q:
+// dt/dp = (q'/d^2 - 2 (v.q') v/d^4) / (ln e)''.
+void let_move(Nearest& q, const Vec3d& p, const Vec3d& first, const Vec3d& second, double radius_slope) {
+  const Vec3d v = p - q.at;
+  const double d2 = length_squared(v), along = dot(v, first) / d2, fall = radius_slope / q.radius;
+  const double bend = (length_squared(first) - dot(v, second)) / d2 - 2 * along * along + fall * fall;
+  if (!(bend > 0) || !(d2 > 0)) return;
+  const Vec3d t_gradient = (first / d2 - v * (2 * along / d2)) / bend;
+  q.moves = Matrix3::outer(first, t_gradient);
+  q.radius_gradient = t_gradient * radius_slope;
+}
+
+Nearest nearer(const Nearest& a, const Nearest& b, const Vec3d& p) {
+  return b.scaled_squared(p) < a.scaled_squared(p) ? b : a;
+}
+
+// With the foot at tau_f and height h, e is stationary at sigma h^2 / tau_f beyond the foot, a minimum for tau_f > 0.
+//                                                                                          [field-maths 3.2]
+Nearest nearest_of(const SegmentSkeleton& s, const Vec3d& p) {
+  const double length = marrow::length(s.to - s.from);
+  const Vec3d u = (s.to - s.from) / length;
+  const double foot = dot(p - s.from, u), slope = (s.radius_to - s.radius_from) / length;
+  const double foot_radius = s.radius_from + slope * foot;
+  if (foot_radius > 0) {
+    const double t = foot + slope * length_squared(p - s.from - u * foot) / foot_radius;
+    if (t > 0 && t < length) {
+      Nearest inside{s.from + u * t, s.radius_from + slope * t};
+      let_move(inside, p, u, {}, slope);
+      return inside;
+    }
+  }
+  return nearer({s.from, s.radius_from}, {s.to, s.radius_to}, p);
+}
+
+// In the plane likewise, with the gradient of the radius in place of the slope. `inside` when it is in the triangle.
+struct PlaneNearest {
+  Nearest at;
+  bool inside;
+};
+PlaneNearest nearest_in_plane(const TriangleSkeleton& s, const Vec3d& p) {
+  const Vec3d a = s.vertices[1] - s.vertices[0], b = s.vertices[2] - s.vertices[0], normal = cross(a, b);
+  const double area2 = length_squared(normal);
+  // dual vectors: barycentric coordinates are dot(x - vertex 0, dual)
+  const Vec3d dual1 = cross(b, normal) / area2, dual2 = cross(normal, a) / area2;
+  const Vec3d rise = dual1 * (s.radii[1] - s.radii[0]) + dual2 * (s.radii[2] - s.radii[0]);
+  const double height = dot(p - s.vertices[0], normal) / std::sqrt(area2);
+  const Vec3d foot = p - normal * (dot(p - s.vertices[0], normal) / area2);
+  const double foot_radius = s.radii[0] + dot(foot - s.vertices[0], rise);
+  if (!(foot_radius > 0)) return {{}, false};
+  const Vec3d q = foot + rise * (height * height / foot_radius), from = q - s.vertices[0];
+  const double first = dot(from, dual1), second = dot(from, dual2);
+  if (!(first >= 0 && second >= 0 && first + second <= 1)) return {{}, false};
+  Nearest at{q, s.radii[0] + dot(from, rise)};
+  // q = foot + rise height^2 / tau_f, by the chain rule
+  const Vec3d n = normal / std::sqrt(area2);
+  const Vec3d step = n * (2 * height / foot_radius) - rise * (height * height / (foot_radius * foot_radius));
+  at.moves = Matrix3::scaled_identity(1) + Matrix3::outer(n, n) * -1.0 + Matrix3::outer(rise, step);
+  at.radius_gradient = at.moves.transposed_times(rise);
+  return {at, true};
+}
+
+Nearest nearest_of(const TriangleSkeleton& s, const Vec3d& p) {
+  if (const auto [at, inside] = nearest_in_plane(s, p); inside) return at;
+  Nearest best{s.vertices[0], s.radii[0]};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    best = nearer(best, nearest_of(SegmentSkeleton{s.vertices[i], s.vertices[j], s.radii[i], s.radii[j]}, p), p);
+  }
+  return best;
+}
+
+// An arc as a curve over the angle.
+struct ArcCurve {
+  ArcView view;
+  Vec3d p;
+  double radius_begin, radius_slope;
+
+  double radius(double angle) const { return radius_begin + radius_slope * (angle - view.begin); }
+  double squared_distance(double angle) const {
+    const double s = sin(angle / 2);
+    return view.gap() + 4 * view.r * view.major * s * s;
+  }
+  // of e^2 by the angle, but for a positive factor
+  double slope(double angle) const {
+    return view.r * view.major * sin(angle) * radius(angle) - squared_distance(angle) * radius_slope;
+  }
+  Nearest at(double angle) const {
+    const auto half = sincos(angle / 2);
+    return {p - view.from_arc(half), radius(angle)};
+  }
+  Nearest moving_at(double angle) const {
+    Nearest q = at(angle);
+    const auto [sine, cosine] = sincos(angle);
+    const Vec3d first = (view.tangential * cosine - view.radial * sine) * view.major;
+    const Vec3d second = (view.radial * cosine + view.tangential * sine) * -view.major;
+    let_move(q, p, first, second, radius_slope);
+    return q;
+  }
+};
+
+// Where the slope turns from falling to rising between low and high.
+double minimum_between(const ArcCurve& curve, double low, double high) {
+  for (;;) {
+    const double middle = low + (high - low) / 2;
+    if (!(low < middle && middle < high)) return middle;
+    (curve.slope(middle) < 0 ? low : high) = middle;
+  }
+}
+
+Nearest nearest_of(const ArcSkeleton& s, const Vec3d& p) {
+  const ArcView view = view_from(s, p);
+  const ArcCurve curve{view, p, s.radius_from, (s.radius_to - s.radius_from) / (view.end - view.begin)};
+  const bool is_closed = s.end - s.begin >= 2 * std::numbers::pi * (1 - 1e-12);
+  if (curve.radius_slope == 0 && (is_closed || (view.begin <= 0 && view.end >= 0))) return curve.moving_at(0);
+  Nearest best = nearer(curve.at(view.begin), curve.at(view.end), p);
+  if (curve.radius_slope == 0) return best;
+  // e^2 is a sine against a parabola and has few minima in a turn; each is wider than a 64th of it but where the radius
+  // falls to less than that share, or the minima are level with each other
+  constexpr int parts = 64;
+  const double step = (view.end - view.begin) / parts;
+  for (int i = 0; i < parts; ++i) {
+    const double low = view.begin + step * i, high = i + 1 == parts ? view.end : view.begin + step * (i + 1);
+    if (curve.slope(low) < 0 && curve.slope(high) >= 0)
+      best = nearer(best, curve.moving_at(minimum_between(curve, low, high)), p);
+  }
+  return best;
+}
+
+}  // namespace
+
+template <Derivatives Order>
+SkeletonSample distance_field(const SegmentSkeleton& s, const Vec3d& p, const Kernel& kernel) {
+  if (s.from == s.to) return {};
+  return sample_at<Order>(nearest_of(s, p), p, kernel);
+}
+template <Derivatives Order>
+SkeletonSample distance_field(const TriangleSkeleton& s, const Vec3d& p, const Kernel& kernel) {
+  return sample_at<Order>(nearest_of(s, p), p, kernel);
+}
+template <Derivatives Order>
+SkeletonSample distance_field(const ArcSkeleton& s, const Vec3d& p, const Kernel& kernel) {
+  return sample_at<Order>(nearest_of(s, p), p, kernel);
+}
+
+template SkeletonSample distance_field<Derivatives::ScaleInvariant>(const SegmentSkeleton&, const Vec3d&,
+                                                                    const Kernel&);
+template SkeletonSample distance_field<Derivatives::First>(const SegmentSkeleton&, const Vec3d&, const Kernel&);
+template SkeletonSample distance_field<Derivatives::Second>(const SegmentSkeleton&, const Vec3d&, const Kernel&);
+template SkeletonSample distance_field<Derivatives::ScaleInvariant>(const TriangleSkeleton&, const Vec3d&,
+                                                                    const Kernel&);
+template SkeletonSample distance_field<Derivatives::First>(const TriangleSkeleton&, const Vec3d&, const Kernel&);
+template SkeletonSample distance_field<Derivatives::Second>(const TriangleSkeleton&, const Vec3d&, const Kernel&);
+template SkeletonSample distance_field<Derivatives::ScaleInvariant>(const ArcSkeleton&, const Vec3d&, const Kernel&);
+template SkeletonSample distance_field<Derivatives::First>(const ArcSkeleton&, const Vec3d&, const Kernel&);
+template SkeletonSample distance_field<Derivatives::Second>(const ArcSkeleton&, const Vec3d&, const Kernel&);
+
+}  // namespace marrow
