@@ -51,6 +51,7 @@ struct ProbeCommand {
   SceneInput scene;
   std::optional<std::string> object;
   std::filesystem::path points;  ///< "-": standard input
+  bool curvature = false;        ///< of one blend: the Hessian too
 };
 
 struct InfoCommand {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "field/blend/curvature.h"
 #include "renderer/app/commands.h"
 #include "renderer/app/files.h"
 #include "renderer/app/point_list.h"
@@ -38,12 +39,31 @@ std::string sample_of_blend(const PlacedBlend& part, const Vec3d& p) {
       json(s.corrected_gradient));
 }
 
-void print_samples(const FieldProgram& program, const std::vector<Vec3d>& points) {
+// A Hessian in world coordinates: L^T H L, L the map to the blend's own.
+Matrix3 in_world(const PlacedBlend& part, const Matrix3& hessian) {
+  Matrix3 columns;
+  for (std::size_t k = 0; k < 3; ++k)
+    columns.rows[k] = part.local_from_world.transposed(hessian.times(part.local_from_world.columns[k]));
+  return columns;  // symmetric, so that its columns are its rows
+}
+
+std::string curvature_of_blend(const PlacedBlend& part, const Vec3d& p) {
+  const Vec3d local = part.is_in_world() ? p : part.local_from_world.point(p);
+  const Matrix3 sum = in_world(part, sum_hessian(part.blend, local));
+  const Matrix3 corrected = in_world(part, corrected_hessian(part.blend, local));
+  const Curvature curvature = curvature_of(evaluate_part(part, p).corrected_gradient, corrected);
+  return fmt::format(R"(, "sum_hessian": [{}, {}, {}], "mean_curvature": {}, "gaussian_curvature": {})",
+                     json(sum.rows[0]), json(sum.rows[1]), json(sum.rows[2]), json(curvature.mean),
+                     json(curvature.gaussian));
+}
+
+void print_samples(const FieldProgram& program, const std::vector<Vec3d>& points, bool curvature) {
   const bool blend = is_single_blend(program);
   std::string_view separator = "[\n";
   for (const Vec3d& p : points) {
-    say(fmt::format("{}{{{}{}}}", separator, sample_of_field(program, p),
-                    blend ? sample_of_blend(program.parts()[0], p) : std::string()));
+    say(fmt::format("{}{{{}{}{}}}", separator, sample_of_field(program, p),
+                    blend ? sample_of_blend(program.parts()[0], p) : std::string(),
+                    blend && curvature ? curvature_of_blend(program.parts()[0], p) : std::string()));
     separator = ",\n";
   }
   say(fmt::format("{}]\n", points.empty() ? "[" : "\n"));
@@ -73,7 +93,7 @@ ExitCode run(const ProbeCommand& command) {
   SourceCache sources;
   const auto points = points_of(command.points, sources);
   if (!points) return report(points.why(), sources, ExitCode::BadInput);
-  print_samples(fields->front()->program, *points);
+  print_samples(fields->front()->program, *points, command.curvature);
   return ExitCode::Ok;
 }
 

@@ -9,6 +9,8 @@ POINTS = [(0.5, 0, 0), (0, 2, 0), (1, 1, 1), (-3, 0.25, 1e-3)]
 BASIC = ["point", "value", "gradient", "iso", "inside"]
 OF_BLEND = ["sum", "sum_gradient", "si_gradient", "si_norm", "alpha", "corrected", "corrected_gradient"]
 
+OF_CURVATURE = ["sum_hessian", "mean_curvature", "gaussian_curvature"]
+
 
 class ProbeTest(ProgramTest):
     def probe(self, scene, points, *arguments):
@@ -31,6 +33,15 @@ class ProbeTest(ProgramTest):
             self.assertEqual(answer["inside"], answer["value"] > answer["iso"])
             along = sum(g * x for g, x in zip(answer["sum_gradient"], point)) / distance
             self.assert_near(along, -3 * distance**-4)
+
+    def test_curvature_is_that_of_a_ball(self):
+        for point, answer in zip(POINTS, self.probe(self.write("point.yaml", POINT), POINTS, "--curvature")):
+            self.assertEqual(list(answer), BASIC + OF_BLEND + OF_CURVATURE)
+            distance = math.sqrt(sum(x * x for x in point))
+            self.assertAlmostEqual(answer["mean_curvature"] * distance, 1, 6)
+            self.assertAlmostEqual(answer["gaussian_curvature"] * distance**2, 1, 6)
+            # f = 1/d^3: the trace of its Hessian is 6 / d^5
+            self.assertAlmostEqual(sum(answer["sum_hessian"][k][k] for k in range(3)) * distance**5 / 6, 1, 9)
 
     def test_numbers_survive_the_text(self):
         scene = self.write("point.yaml", POINT)

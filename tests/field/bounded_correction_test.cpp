@@ -192,6 +192,46 @@ TEST(BoundedCorrection, JoinsEqualSkeletonsExactlyWhenTheyTouch) {
   EXPECT_EQ(exact, 144);
 }
 
+TEST(BoundedCorrection, GradientsOfBlendsAreTheDerivativesOfTheirCorrectedFields) {
+  Random random(208);
+  int checked = 0, in_branch = 0;
+  for (int i = 0; i < 6000; ++i) {
+    Kernel kernel = random_kernel(random, i);
+    // the third derivative of low compact kernels is not bounded where their support begins
+    if (kernel.family == KernelFamily::Compact) kernel.degree = std::max(kernel.degree, 8);
+    BlendField blend;
+    blend.kernel = kernel.family;
+    blend.kernel_shape = kernel.shape;
+    blend.degree = kernel.degree;
+    blend.alpha = random.between(0.1, 1.55);
+    blend.projection = i % 4 < 2 ? Projection::Paper : Projection::Exact;
+    for (int k = 0; k < 3; ++k) {
+      blend.points.add(random.point(), {});
+      blend.segments.add(random.segment(), {});
+    }
+    const Vec3d p = random.vector(2);
+    const BlendSample s = evaluate(blend, p);
+    EXPECT_EQ(s.corrected, corrected_value(blend, p));
+    if (s.corrected < 0.2 || s.corrected > 4) continue;
+    const double step = 1e-4;
+    double jump = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (const double side : {-1.0, 1.0}) {
+        Vec3d q = p;
+        q[axis] += 3 * side * step;
+        jump = std::max(jump, test::relative(evaluate(blend, q).corrected_gradient, s.corrected_gradient));
+      }
+    if (jump > 5e-3) continue;
+    const auto value = [&](const Vec3d& q) { return corrected_value(blend, q); };
+    EXPECT_LE(relative(test::numeric_gradient(value, p, step), s.corrected_gradient), 1e-5) << i;
+    ++checked;
+    in_branch += correction_of(blend).in_cavity_branch(s.sum, s.si_norm);
+  }
+  std::cout << "  " << checked << " places, " << in_branch << " in the cavity branch\n";
+  EXPECT_GT(checked, 1000);
+  EXPECT_GT(in_branch, 30);
+}
+
 // Outward from the middle of two equal skeletons the exact projection never rises (field-maths 5: no cavity).
 TEST(BoundedCorrection, LeavesNoCavityBetweenEqualSkeletonsWithExactProjection) {
   Random random(207);
