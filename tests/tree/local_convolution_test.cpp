@@ -109,6 +109,21 @@ TEST(LocalConvolution, Laws) {
   test::expect_lawful(FieldOf{line}, 76, 500);
 }
 
+// Wild polylines with wild radii, whose fields are torn where the place with the largest field vanishes.
+TEST(LocalConvolution, LawsHoldAcrossTears) {
+  test::Random random(79);
+  for (unsigned scene = 0; scene < 40; ++scene) {
+    LocalConvolution c;
+    c.radius.clear();
+    for (int k = 0; k < 4; ++k) {
+      c.points.push_back(random.vector(1));
+      c.radius.push_back(random.between(0.05, 1));
+    }
+    c.reach = 0.4;
+    test::expect_lawful(FieldOf{c}, 790 + scene, 200);
+  }
+}
+
 // On the surface, which the tracer has to find, enclosures are small and slopes bounded.
 TEST(LocalConvolution, EnclosuresAreTightOnTheSurface) {
   test::Random random(77);

@@ -43,6 +43,8 @@ struct LocalConvolution {
 
  private:
   double radius_at(std::size_t vertex) const { return radius.size() == 1 ? radius[0] : radius[vertex]; }
+  template <Number X>
+  X over_box(const PlaneChain& chain, const Vec3<X>& p) const;
   /// The convolution of what is within reach of a place.
   template <Number X>
   X beside(const PlaneChain& chain, const Vec3<X>& p, const X& place) const;
@@ -62,24 +64,40 @@ X LocalConvolution::beside(const PlaneChain& chain, const Vec3<X>& p, const X& p
   return sum;
 }
 
-/// Over a box, every group of places that holds one for certain raises the value to the least of its members; others
-/// only may. Slopes are those of all that may be largest, unless one of them can vanish.
 template <Number X>
 X LocalConvolution::value(const Vec3<X>& p) const {
   const PlaneChain chain(points);
-  X most(0.0);
-  if constexpr (!is_enclosure<X>) {
+  if constexpr (is_enclosure<X>) {
+    return over_box(chain, p);
+  } else {
+    X most(0.0);
     chain.for_each_place(p, [&](const X& place) { most = max(most, beside(chain, p, place)); });
     return most;
-  } else {
-    EnclosureOfPlaces<X> all;
-    chain.for_each_group(p, [&](std::span<const PlanePlace<X>> group, bool certain, bool may_tear) {
-      std::vector<X> fields;
-      for (const PlanePlace<X>& place : group) fields.push_back(beside(chain, p, place.at));
-      all.add(fields, certain, may_tear);
-    });
-    return all.largest();
   }
+}
+
+/// Bounds of the value at all places first; then slopes at those only that may have the largest, unless one of them can
+/// vanish.
+template <Number X>
+X LocalConvolution::over_box(const PlaneChain& chain, const Vec3<X>& p) const {
+  const Vec3<Interval> box{value_of(p.x), value_of(p.y), value_of(p.z)};
+  LargestOfPlaces<X> places;
+  chain.for_each_group(p, [&](std::span<const PlanePlace<X>> group, bool certain, bool may_tear) {
+    places.add(group, certain, may_tear, [&](const X& place) { return beside(chain, box, Interval(value_of(place))); });
+  });
+  X most(places.value());
+  if constexpr (JetNumber<X>) {
+    bool first = true;
+    places.for_each_that_counts([&](const auto& candidate) {
+      const X f = candidate.may_tear ? X(0.0) : beside(chain, p, candidate.place);
+      for (std::size_t i = 0; i < most.slope.size(); ++i) {
+        const Interval slope = candidate.may_tear ? Interval::everything() : f.slope[i];
+        most.slope[i] = first ? slope : hull(most.slope[i], slope);
+      }
+      first = false;
+    });
+  }
+  return most;
 }
 
 }  // namespace marrow

@@ -115,47 +115,39 @@ void PlaneChain::for_each_group(const Vec3<X>& p, Visit visit) const {
   settle(-1);
 }
 
-/// The largest of fields of which some may not be there.
+/// The largest of fields at places of which some may not be there.
 template <Number X>
-class EnclosureOfPlaces {
+class LargestOfPlaces {
  public:
-  /// Fields of the members of a group.
-  void add(std::span<const X> fields, bool certain, bool may_tear) {
+  struct Candidate {
+    X place;
+    Interval field;
+    bool may_tear;
+  };
+  /// A group, with field(place) for the bounds at one.
+  template <class Field>
+  void add(std::span<const PlanePlace<X>> group, bool certain, bool may_tear, Field field) {
     double least = std::numeric_limits<double>::infinity();
-    for (const X& f : fields) {
-      least = std::min(least, lower(f));
-      all_.push_back({f, may_tear});
+    for (const PlanePlace<X>& place : group) {
+      all_.push_back({place.at, field(place.at), may_tear});
+      least = std::min(least, all_.back().field.lo);
     }
     if (certain) sure_ = std::max(sure_, least);
   }
-  X largest() const {
-    X most(0.0);
-    bool first = true, torn = false;
-    for (const auto& [f, may_tear] : all_) {
-      if (upper(f) < sure_) continue;
-      most = first ? f : max(most, f);
-      first = false;
-      torn = torn || may_tear;
-    }
-    return bounded(most, torn);
+  Interval value() const {
+    Interval most = sure_;
+    for (const Candidate& c : all_) most.hi = std::max(most.hi, c.field.hi);
+    return most;
+  }
+  /// Those that may have the largest field.
+  template <class Visit>
+  void for_each_that_counts(Visit visit) const {
+    for (const Candidate& c : all_)
+      if (c.field.hi >= sure_) visit(c);
   }
 
  private:
-  struct Field {
-    X value;
-    bool may_tear;
-  };
-  X bounded(X most, bool torn) const {
-    if constexpr (JetNumber<X>) {
-      most.value.lo = sure_;
-      if (torn) most.slope.fill(Interval::everything());
-    } else {
-      most.lo = sure_;
-    }
-    return most;
-  }
-
-  std::vector<Field> all_;
+  std::vector<Candidate> all_;
   double sure_ = 0;
 };
 
