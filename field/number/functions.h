@@ -226,6 +226,13 @@ X length(const X& a, const X& b) {
   return length(Vec3<X>{a, b, X(0.0)});
 }
 
+/// With a constant vector, for less than with one of numbers.
+template <Number X>
+requires(!std::same_as<X, double>) X dot(const Vec3<X>& a, const Vec3d& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+template <Number X>
+requires(!std::same_as<X, double>) Vec3<X>
+operator-(const Vec3<X>& a, const Vec3d& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+
 /// A constant vector as one of numbers.
 template <Number X>
 Vec3<X> constant(const Vec3d& v) {

@@ -68,6 +68,12 @@ inline Interval operator*(const Interval& a, const Interval& b) {
   const double p = product(a.lo, b.lo), q = product(a.lo, b.hi), r = product(a.hi, b.lo), s = product(a.hi, b.hi);
   return rounding::outward(std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s)));
 }
+inline Interval operator*(const Interval& a, double s) {
+  if (s == 0 || a == Interval(0)) return 0;
+  const double p = rounding::product(a.lo, s), q = rounding::product(a.hi, s);
+  return s < 0 ? rounding::outward(q, p) : rounding::outward(p, q);
+}
+inline Interval operator*(double s, const Interval& a) { return a * s; }
 inline Interval operator/(const Interval& a, const Interval& b) {
   if (b.contains(0)) return Interval::everything();
   using rounding::quotient;

@@ -57,6 +57,20 @@ struct Jet {
     for (std::size_t i = 0; i < N; ++i) r.slope[i] = (a.slope[i] - r.value * b.slope[i]) / b.value;
     return r;
   }
+  // Constants move no slope.
+  friend Jet operator+(Jet a, double b) {
+    a.value = a.value + T(b);
+    return a;
+  }
+  friend Jet operator+(double a, const Jet& b) { return b + a; }
+  friend Jet operator-(const Jet& a, double b) { return a + -b; }
+  friend Jet operator-(double a, const Jet& b) { return -b + a; }
+  friend Jet operator*(Jet a, double s) {
+    a.value = a.value * s;
+    for (T& slope : a.slope) slope = slope * s;
+    return a;
+  }
+  friend Jet operator*(double s, const Jet& a) { return a * s; }
   Jet& operator+=(const Jet& b) { return *this = *this + b; }
   Jet& operator-=(const Jet& b) { return *this = *this - b; }
   Jet& operator*=(const Jet& b) { return *this = *this * b; }
@@ -112,6 +126,15 @@ struct HessianJet {
     const double r = 1 / b.value;
     return a * chain(b, r, -r * r, 2 * r * r * r);
   }
+  friend HessianJet operator+(HessianJet a, double b) {
+    a.value += b;
+    return a;
+  }
+  friend HessianJet operator+(double a, const HessianJet& b) { return b + a; }
+  friend HessianJet operator-(const HessianJet& a, double b) { return a + -b; }
+  friend HessianJet operator-(double a, const HessianJet& b) { return -b + a; }
+  friend HessianJet operator*(const HessianJet& a, double s) { return chain(a, a.value * s, s, 0); }
+  friend HessianJet operator*(double s, const HessianJet& a) { return a * s; }
   HessianJet& operator+=(const HessianJet& b) { return *this = *this + b; }
   HessianJet& operator-=(const HessianJet& b) { return *this = *this - b; }
   HessianJet& operator*=(const HessianJet& b) { return *this = *this * b; }

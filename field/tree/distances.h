@@ -14,8 +14,8 @@ struct FromAxis {
 /// Each coordinate is one sum, so that boxes across the axis lose nothing but their rotation.
 template <Number X>
 Vec3<X> local_point(const Vec3<X>& p, const Vec3d& origin, const Frame& frame) {
-  const Vec3<X> v = p - constant<X>(origin);
-  return {dot(v, constant<X>(frame.x)), dot(v, constant<X>(frame.y)), dot(v, constant<X>(frame.z))};
+  const Vec3<X> v = p - origin;
+  return {dot(v, frame.x), dot(v, frame.y), dot(v, frame.z)};
 }
 template <Number X>
 FromAxis<X> from_axis(const Vec3<X>& p, const Vec3d& origin, const UnitVec3& axis) {
@@ -38,7 +38,7 @@ X corner_distance(const Vec3<X>& q) {
 /// How far x lies outside of [0, end]; 0 within.
 template <Number X>
 X excess(const X& x, double end) {
-  return max(x - X(end), X(0.0)) + max(-x, X(0.0));
+  return max(x - end, X(0.0)) + max(-x, X(0.0));
 }
 
 }  // namespace marrow

@@ -24,7 +24,7 @@ struct WyvillProfile {
   static constexpr double surface() { return 0.4542020189474065; }
   template <Number X>
   static X profile(const X& x) {
-    return X(2.0) * integer_power(X(1.0) - square(x), 3);
+    return 2.0 * integer_power(1.0 - square(x), 3);
   }
 };
 
@@ -48,7 +48,7 @@ struct PolynomialProfile {
   double surface() const { return surfaces[static_cast<std::size_t>(degree - least)]; }
   template <Number X>
   X profile(const X& x) const {
-    return X(2.0) * integer_power(X(1.0) - square(x), degree);
+    return 2.0 * integer_power(1.0 - square(x), degree);
   }
 };
 
@@ -65,7 +65,7 @@ struct SoftObjectProfile {
   template <Number X>
   static X profile(const X& x) {
     const X u = square(x);
-    return X(2.0) * square(X(1.0) - u) * (X(1.0) - X(4.0 / 9) * u);
+    return 2.0 * square(1.0 - u) * (1.0 - (4.0 / 9) * u);
   }
 };
 
@@ -82,8 +82,8 @@ struct MetaballProfile {
   template <Number X>
   static X profile(const X& x) {
     return piecewise(
-        x, 1.0 / 3, [](const X& near) { return X(2.0) - X(6.0) * square(near); },
-        [](const X& far) { return X(3.0) * square(X(1.0) - far); });
+        x, 1.0 / 3, [](const X& near) { return 2.0 - 6.0 * square(near); },
+        [](const X& far) { return 3.0 * square(1.0 - far); });
   }
 };
 
@@ -95,7 +95,7 @@ using Potential = std::variant<WyvillProfile, PolynomialProfile, SoftObjectProfi
 template <class Profile, Number X>
 X bounded_field(const Profile& potential, const X& distance) {
   const double per_length = (1 - potential.surface()) / potential.range;
-  const X x = X(potential.surface()) + distance * X(per_length);
+  const X x = potential.surface() + distance * per_length;
   return piecewise(
       x, 1, [&](const X& near) { return known_within(potential.profile(max(near, X(0.0))), 0, 2); },
       [](const X&) { return X(0.0); });

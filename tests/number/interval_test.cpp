@@ -133,6 +133,16 @@ TEST(Interval, OperationsHoldTheirExactValues) {
   }
 }
 
+TEST(Interval, TimesANumberIsTimesAPoint) {
+  Random random(18);
+  for (int i = 0; i < wanted_rounds(); ++i) {
+    const Interval x = any_interval(random);
+    const double s = any_double(random);
+    ASSERT_EQ(x * s, x * Interval(s)) << x.lo << " .. " << x.hi << " times " << s;
+    ASSERT_EQ(s * x, x * s);
+  }
+}
+
 TEST(Interval, OperationsOnPointsAreNarrow) {
   Random random(14);
   for (int i = 0; i < 2000; ++i) {

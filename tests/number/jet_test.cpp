@@ -52,6 +52,16 @@ TEST(Jet, Arithmetic) {
         return -x;
       },
       0);
+  expect_lawful(
+      "with constants",
+      [](auto x, auto y, auto z) { return 2.5 * x - (y * -1.5 + 0.25) * (3.0 - z) + (x - 1.0) * (0.5 + y); }, 0);
+  expect_lawful(
+      "with constant vectors",
+      []<class X>(X x, X y, X z) {
+        const Vec3<X> v = Vec3<X>{x, y, z} - Vec3d{1, -2, 0.3};
+        return dot(v, Vec3d{0.1, 0.7, -3}) * v.x;
+      },
+      0);
 }
 
 TEST(Jet, SmoothFunctions) {

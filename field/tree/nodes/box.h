@@ -31,10 +31,10 @@ struct Box {
 
   template <Number X>
   X value(const Vec3<X>& p) const {
-    const Vec3<X> v = p - constant<X>(center);
+    const Vec3<X> v = p - center;
     const Vec3d flat = size * 0.5 - Vec3d{rounding, rounding, rounding};
-    const Vec3<X> q{abs(v.x) - X(flat.x), abs(v.y) - X(flat.y), abs(v.z) - X(flat.z)};
-    return bounded_field(potential, corner_distance(q) - X(rounding));
+    const Vec3<X> q{abs(v.x) - flat.x, abs(v.y) - flat.y, abs(v.z) - flat.z};
+    return bounded_field(potential, corner_distance(q) - rounding);
   }
 };
 

@@ -39,14 +39,14 @@ struct Cone {
   X distance(const X& r, const X& z) const {
     const double height = length(to - from), growth = radius.back() - radius.front();
     const double side = std::sqrt(height * height + growth * growth);
-    const X s = r - X(radius.front());
-    const X across = s * X(height / side) - z * X(growth / side), along = s * X(growth / side) + z * X(height / side);
-    const X low = -z, high = z - X(height), zero(0.0);
+    const X s = r - radius.front();
+    const X across = s * (height / side) - z * (growth / side), along = s * (growth / side) + z * (height / side);
+    const X low = -z, high = z - height, zero(0.0);
     const X inside = max(max(low, high), across);
     return piecewise(
         inside, 0, [](const X& depth) { return depth; },
         [&](const X&) {
-          const X bottom = length(max(s, zero), z), top = length(max(r - X(radius.back()), zero), high);
+          const X bottom = length(max(s, zero), z), top = length(max(r - radius.back(), zero), high);
           return min(length(across, excess(along, side)), min(bottom, top));
         });
   }

@@ -34,7 +34,7 @@ struct Cylinder {
   X value(const Vec3<X>& p) const {
     const double half = 0.5 * length(to - from);
     const FromAxis<X> q = from_axis(p, (from + to) * 0.5, normalize(to - from));
-    return bounded_field(potential, corner_distance(q.radius - X(radius), abs(q.along) - X(half)));
+    return bounded_field(potential, corner_distance(q.radius - radius, abs(q.along) - half));
   }
 };
 

@@ -27,7 +27,7 @@ struct Disc {
   template <Number X>
   X value(const Vec3<X>& p) const {
     const FromAxis<X> q = from_axis(p, center, axis);
-    return bounded_field(potential, length(max(q.radius - X(radius), X(0.0)), q.along) - X(0.5 * thickness));
+    return bounded_field(potential, length(max(q.radius - radius, X(0.0)), q.along) - 0.5 * thickness);
   }
 };
 

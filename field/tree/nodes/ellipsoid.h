@@ -28,9 +28,9 @@ struct Ellipsoid {
 
   template <Number X>
   X value(const Vec3<X>& p) const {
-    const Vec3<X> v = p - constant<X>(center);
-    const Vec3<X> unit{v.x * X(1 / radii.x), v.y * X(1 / radii.y), v.z * X(1 / radii.z)};
-    return bounded_field(potential, (length(unit) - X(1.0)) * X(least_radius()));
+    const Vec3<X> v = p - center;
+    const Vec3<X> unit{v.x * (1 / radii.x), v.y * (1 / radii.y), v.z * (1 / radii.z)};
+    return bounded_field(potential, (length(unit) - 1.0) * least_radius());
   }
 };
 

@@ -39,24 +39,22 @@ struct LineSolid {
   template <Number X>
   X larger_ball(const Vec3<X>& p) const {
     const bool first = radius.front() >= radius.back();
-    return length(p - constant<X>(first ? from : to)) - X(first ? radius.front() : radius.back());
+    return length(p - (first ? from : to)) - (first ? radius.front() : radius.back());
   }
   /// In the plane of the axis: along the straight side, which leans by asin(sine), and across it. Beyond either end of
   /// the side the ball there is nearest.
   template <Number X>
   X distance(const X& r, const X& z, double sine, double span) const {
     const double cosine = std::sqrt(1 - sine * sine);
-    const X across = r * X(cosine) + z * X(sine), along = z * X(cosine) - r * X(sine);
+    const X across = r * cosine + z * sine, along = z * cosine - r * sine;
     const X from_line = piecewise(
         along, 0, [&](const X& before) { return length(across, before); },
         [&](const X& on) {
           return piecewise(
               on, cosine * span, [&](const X&) { return across; },
-              [&](const X& after) {
-                return length(across - X(sine * span), after - X(cosine * span)) + X(sine * span);
-              });
+              [&](const X& after) { return length(across - sine * span, after - cosine * span) + sine * span; });
         });
-    return from_line - X(radius.front());
+    return from_line - radius.front();
   }
 };
 

@@ -22,7 +22,7 @@ struct Plane {
 
   template <Number X>
   X value(const Vec3<X>& p) const {
-    return bounded_field(potential, dot(p - constant<X>(point), constant<X>(normal)));
+    return bounded_field(potential, dot(p - point, normal));
   }
 };
 

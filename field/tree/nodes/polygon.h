@@ -36,7 +36,7 @@ struct Polygon {
     const Placed plane = placed();
     const Vec3<X> local = local_point(p, plane.center, plane.frame);
     const X beside = outside_distance(local.x, local.y, plane);
-    return bounded_field(potential, length(beside, local.z) - X(0.5 * thickness));
+    return bounded_field(potential, length(beside, local.z) - 0.5 * thickness);
   }
 
  private:
@@ -71,8 +71,9 @@ struct Polygon {
   template <Number X>
   static X edge_distance(const X& x, const X& y, const Vec3d& a, const Vec3d& b) {
     const double dx = b.x - a.x, dy = b.y - a.y, side = std::sqrt(dx * dx + dy * dy);
-    if (!(side > 0)) return length(x - X(a.x), y - X(a.y));
-    const X u = x - X(a.x), v = y - X(a.y), ex(dx / side), ey(dy / side);
+    if (!(side > 0)) return length(x - a.x, y - a.y);
+    const double ex = dx / side, ey = dy / side;
+    const X u = x - a.x, v = y - a.y;
     return length(u * ey - v * ex, excess(u * ex + v * ey, side));
   }
 };

@@ -22,7 +22,7 @@ struct Sphere {
 
   template <Number X>
   X value(const Vec3<X>& p) const {
-    return bounded_field(potential, length(p - constant<X>(center)) - X(radius));
+    return bounded_field(potential, length(p - center) - radius);
   }
 };
 

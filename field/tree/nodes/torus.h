@@ -27,7 +27,7 @@ struct Torus {
   template <Number X>
   X value(const Vec3<X>& p) const {
     const FromAxis<X> q = from_axis(p, center, axis);
-    return bounded_field(potential, length(q.radius - X(radius), q.along) - X(tube));
+    return bounded_field(potential, length(q.radius - radius, q.along) - tube);
   }
 };
 
