@@ -1,7 +1,8 @@
 // A projection angle that varies in space.
 #pragma once
 
-#include "field/math/vec3.h"
+#include "field/math/box3.h"
+#include "field/number/interval.h"
 
 namespace marrow {
 
@@ -19,6 +20,8 @@ class AlphaSource {
   AlphaSource& operator=(const AlphaSource&) = delete;
   virtual ~AlphaSource() = default;
   virtual AlphaSample at(const Vec3d& p) const = 0;
+  /// All angles in a box.
+  virtual Interval bounds(const Box3&) const = 0;
 };
 
 }  // namespace marrow

@@ -247,20 +247,19 @@ class Compiler {
 
   void add_child(const Placement& child, const Blend& blend, SkeletonModel model, BlendField& field,
                  std::vector<Placement>& open) {
-    std::visit(Overloaded{[&](const Primitive& p) { add_primitive(p, child, blend, model, field); },
-                          [&](const Transform& t) {
-                            if (!t.parent_from_child.similarity())
-                              return report(child.node, "a transform inside a blend that changes shape",
-                                            "inside a blend move, rotate and scale uniformly; "
-                                            "or put the transform above the blend");
-                            open.push_back({t.of, child.from_node * t.parent_from_child});
-                          },
-                          [&](const Union&) { report_nesting(child.node, "union"); },
-                          [&](const Blend&) { report_nesting(child.node, "blend"); },
-                          [&](const GeneralNode& n) {
-                            report_nesting(child.node, std::string(info_of(n.node->node).name));
-                          }},
-               description_[child.node].what);
+    std::visit(
+        Overloaded{[&](const Primitive& p) { add_primitive(p, child, blend, model, field); },
+                   [&](const Transform& t) {
+                     if (!t.parent_from_child.similarity())
+                       return report(child.node, "a transform inside a blend that changes shape",
+                                     "inside a blend move, rotate and scale uniformly; "
+                                     "or put the transform above the blend");
+                     open.push_back({t.of, child.from_node * t.parent_from_child});
+                   },
+                   [&](const Union&) { report_nesting(child.node, "union"); },
+                   [&](const Blend&) { report_nesting(child.node, "blend"); },
+                   [&](const GeneralNode& n) { report_nesting(child.node, std::string(info_of(n.node->node).name)); }},
+        description_[child.node].what);
   }
 
   void report_nesting(FieldNodeId node, const std::string& kind) {

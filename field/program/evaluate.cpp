@@ -68,6 +68,19 @@ FieldTree tree_of(const PlacedBlend& part) {
   return FieldTree(std::move(nodes), std::move(records), {0});
 }
 
+Interval value_bounds(const FieldProgram& program, const Box3& box) {
+  const Vec3<Interval> p{{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
+  Interval bounds(0);
+  bool is_first = true;
+  const auto add = [&](const Interval& part) {
+    bounds = is_first ? part : max(bounds, part);
+    is_first = false;
+  };
+  for (const PlacedBlend& part : program.parts()) add(value(tree_of(part), p));
+  for (const FieldTree& tree : program.trees()) add(value(tree, p));
+  return bounds;
+}
+
 FieldSample evaluate(const FieldProgram& program, const Vec3d& p) {
   if (program.trees().empty() && program.parts().size() == 1) return sample_of(program.parts().front(), p);
   const Largest largest = largest_part(program, p);

@@ -1,6 +1,7 @@
 // A projection angle from the value of a field.
 #pragma once
 
+#include <algorithm>
 #include <utility>
 
 #include "field/blend/alpha_sample.h"
@@ -18,6 +19,13 @@ class RampedField : public AlphaSource {
     const double share = (s.value - ramp_.from[0]) / (ramp_.from[1] - ramp_.from[0]);
     const double slope = share > 0 && share < 1 ? (ramp_.to[1] - ramp_.to[0]) / (ramp_.from[1] - ramp_.from[0]) : 0;
     return {.value = ramp_(s.value), .gradient = slope == 0 ? Vec3d{} : s.gradient * slope};
+  }
+
+  // A ramp is monotone.
+  Interval bounds(const Box3& box) const override {
+    const Interval v = value_bounds(program_, box);
+    const double a = ramp_(v.lo), b = ramp_(v.hi);
+    return {rounding::down(std::min(a, b), 8), rounding::up(std::max(a, b), 8)};
   }
 
  private:

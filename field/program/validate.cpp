@@ -15,8 +15,8 @@
 #include "field/base/result.h"
 #include "field/blend/local_contact.h"
 #include "field/kernel/inverse_family.h"
-#include "field/program/validate_node.h"
 #include "field/program/node_angles.h"
+#include "field/program/validate_node.h"
 #include "field/skeleton/subdivision_curve.h"
 
 namespace marrow {

@@ -1,0 +1,89 @@
+#include "field/blend/correction_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "field/kernel/inverse_family.h"
+#include "field/math/box3.h"
+
+namespace marrow {
+namespace {
+
+constexpr double inf = Box3::inf;
+
+// Slope of the chord of the convex curve g between two of its points; isotone in both.
+Interval chord_slope(const ReferenceCurve& curve, const Interval& a, const Interval& b) {
+  const auto slope = [&](double x, double y) {
+    if (std::fabs(x - y) < 1e-4 * std::max(x, y)) return curve.slope(0.5 * (x + y));
+    return (curve.at(x) - curve.at(y)) / (x - y);
+  };
+  // Near the diagonal the slope in the middle is off by (1e-4)^2 / 24 g'''/g' < 1e-8, farther the difference loses
+  // 1e-11.
+  return {slope(a.lo, b.lo) * (1 - 1e-8), slope(a.hi, b.hi) * (1 + 1e-8)};
+}
+
+// C is isotone and its clamp makes it no steeper than the curve: dC/df <= 1, dC/dG <= 1/g'(C).   [tracing 3.3]
+PartialBounds coarse_partials(const ReferenceCurve& curve, const Interval& value) {
+  return {{0, 1}, {0, value.lo > 0 ? rounding::up(1 / curve.slope(value.lo), 8) : inf}};
+}
+
+// The partial derivatives of the projection onto the chord.   [field-maths 4.5]
+PartialBounds chord_partials(const ReferenceCurve& curve, const Correction& c, const Interval& f, const Interval& x_H) {
+  const double sine = sin(c.alpha()), cosine = cos(c.alpha());
+  const Interval s = chord_slope(curve, f, x_H), sc = s * Interval(cosine), den = sc + Interval(sine);
+  const Interval psi = sc / den, ps = Interval(cosine * sine) / square(den);
+  const auto slope = [&](const Interval& x) { return Interval{curve.slope(x.lo), curve.slope(x.hi)}; };
+  const Interval df = Interval(1) - psi - ps * (slope(f) - s);
+  const Interval dx = psi - ps * (s - slope(x_H));
+  return {{std::max(0.0, df.lo), df.hi}, Interval{std::max(0.0, dx.lo), dx.hi} / slope(x_H)};
+}
+
+// The root of g(x) cos + x sin = G cos + f sin moves by sin / (g' cos + sin) with f, by cos / (g' cos + sin) with G.
+PartialBounds exact_partials(const ReferenceCurve& curve, const Correction& c, const Interval& value) {
+  const double sine = sin(c.alpha()), cosine = cos(c.alpha());
+  const Interval slope{curve.slope(value.lo) * (1 - 1e-9), curve.slope(value.hi) * (1 + 1e-9)};
+  const Interval den = slope * Interval(cosine) + Interval(sine);
+  return {Interval(sine) / den, Interval(cosine) / den};
+}
+
+// Behind the critical point the corrected value is that of D: only where c = G r^n / (2 (n-1)) < 1 / sqrt(n+1).
+bool may_be_behind_critical_point(const Correction& c, const Interval& f, const Interval& G) {
+  if (!c.cavity() || !(f.hi > 0)) return c.cavity();
+  const int n = c.degree();
+  const double r = pow(2 / f.hi, 1.0 / (n - 1));
+  return G.lo * integer_power(r, n) / (2 * (n - 1)) < (1 + 1e-9) / std::sqrt(n + 1.0);
+}
+
+}  // namespace
+
+PartialBounds partial_bounds(const BlendField& blend, const Correction& c, const Interval& value, const Interval& f,
+                             const Interval& G) {
+  if (c.is_sum()) return {{1, 1}, {0, 0}};
+  if (blend.kernel != KernelFamily::Inverse) return {Interval::everything(), Interval::everything()};
+  const ReferenceCurve curve(blend.degree);
+  if (!(f.lo > 0 && G.lo > 0) || may_be_behind_critical_point(c, f, G))
+    return c.cavity() ? coarse_partials(curve, value) : PartialBounds{Interval::everything(), Interval::everything()};
+  if (c.projection() == Projection::Exact) return exact_partials(curve, c, value);
+  const Interval x_H{curve.inverse(G.lo) * (1 - 1e-12), curve.inverse(G.hi) * (1 + 1e-12)};
+  return chord_partials(curve, c, f, x_H);
+}
+
+// For alpha >= 0 C is isotone in both.   [tracing 3.3]
+// Below 0, where the guard cannot act, it is isotone in G; along f its largest value is at an end, its least at an end
+// or on the crest of the curves M_d. Where the guard may act, C lies between 0 and 2 x_H.   [tracing 3.3;
+// field-maths 4.4]
+Interval correction_bounds(const Correction& c, const Interval& f, const Interval& G) {
+  if (c.alpha() >= 0) return {c.value(f.lo, G.lo) * (1 - 1e-12), c.value(f.hi, G.hi) * (1 + 1e-12)};
+  const int n = c.degree();
+  const ReferenceCurve curve(n);
+  const double x_least = curve.inverse(G.lo), tangent = -tan(c.alpha());
+  const bool may_be_guarded = chord_slope(curve, Interval(f.lo), Interval(x_least)).lo < 2 * tangent * (1 + 1e-9);
+  if (may_be_guarded || !(f.lo > 0)) return {0, 2 * curve.inverse(G.hi) * (1 + 1e-12)};
+  const double crest_r = pow(2 * (n - 1) / (std::sqrt(n + 1.0) * G.lo), 1.0 / n);
+  const double crest = std::clamp(2 / integer_power(crest_r, n - 1), f.lo, f.hi);
+  const double least = std::min({c.value(f.lo, G.lo), c.value(f.hi, G.lo), c.value(crest, G.lo)});
+  const double most = std::max(c.value(f.lo, G.hi), c.value(f.hi, G.hi));
+  return {least * (1 - 1e-9), most * (1 + 1e-9)};
+}
+
+}  // namespace marrow

@@ -1,0 +1,19 @@
+// Bounds of the correction operator and its partial derivatives over intervals of f and G.
+#pragma once
+
+#include "field/blend/blend_field.h"
+#include "field/number/interval.h"
+
+namespace marrow {
+
+/// C over all f and G of the intervals.
+Interval correction_bounds(const Correction&, const Interval& f, const Interval& G);
+
+struct PartialBounds {
+  Interval df, dG;
+};
+/// dC/df and dC/dG there; `value` is what correction_bounds() gave. Everything where no bound is known.
+PartialBounds partial_bounds(const BlendField&, const Correction&, const Interval& value, const Interval& f,
+                             const Interval& G);
+
+}  // namespace marrow

@@ -1,0 +1,235 @@
+#include "field/blend/sum_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "field/kernel/profile.h"
+#include "field/skeleton/distance.h"
+#include "field/skeleton/skeletons.h"
+
+namespace marrow {
+namespace {
+
+constexpr double inf = Box3::inf;
+// Relative error of the closed forms, with a margin of ten.   [field-maths 3.3: 1.2e-13; triangles 2.6e-12]
+constexpr double sample_error = 3e-11;
+
+Interval pad(double x, double by) { return {rounding::down(x - by), rounding::up(x + by)}; }
+
+double largest(const PointSkeleton& s) { return s.radius; }
+double largest(const SegmentSkeleton& s) { return std::max(s.radius_from, s.radius_to); }
+double largest(const ArcSkeleton& s) { return std::max(s.radius_from, s.radius_to); }
+double largest(const TriangleSkeleton& s) { return std::max({s.radii[0], s.radii[1], s.radii[2]}); }
+double least(const PointSkeleton& s) { return s.radius; }
+double least(const SegmentSkeleton& s) { return std::min(s.radius_from, s.radius_to); }
+double least(const ArcSkeleton& s) { return std::min(s.radius_from, s.radius_to); }
+double least(const TriangleSkeleton& s) { return std::min({s.radii[0], s.radii[1], s.radii[2]}); }
+
+// What a primitive can hold of its skeleton within a distance, over a radius to the power of its dimension.
+double share(const PointSkeleton&, double) { return 1; }
+double share(const SegmentSkeleton& s, double reach) { return std::min(length(s.to - s.from), 2 * reach) / least(s); }
+double share(const ArcSkeleton& s, double) { return s.major * (s.end - s.begin) / least(s); }
+double share(const TriangleSkeleton& s, double reach) {
+  const double area = 0.5 * length(cross(s.vertices[1] - s.vertices[0], s.vertices[2] - s.vertices[0]));
+  return std::min(area, 3.2 * reach * reach) / (least(s) * least(s));
+}
+
+// sup |k'| over the scaled distance of a normalised kernel.
+double steepest(const Profile& profile, const Kernel& kernel) {
+  const int m = profile.degree();
+  if (kernel.family == KernelFamily::Cauchy)  // m s x s (1 + s^2 x^2)^(-m/2-1), largest at s^2 x^2 = 1 / (m + 1)
+    return m * kernel.shape / std::sqrt(m + 1.0) * pow(1 + 1.0 / (m + 1), -0.5 * m - 1) / profile.normalisation();
+  // (m x / R^2) (1 - x^2/R^2)^(m/2-1), largest at x^2 = R^2 / (m - 1); the slope at the support for m = 2
+  const double at_top = m > 2 ? pow(1 - 1.0 / (m - 1), 0.5 * m - 1) / std::sqrt(m - 1.0) : 1;
+  return m / kernel.shape * at_top / profile.normalisation();
+}
+
+}  // namespace
+
+SumBounds::SumBounds(const Box3& box)
+    : box_(box), center_(box.center()), rho_(0.5 * length(box.size()) * (1 + 1e-15)) {}
+
+SumBounds::SumBounds(const BlendField& blend, const Box3& box) : SumBounds(box) {
+  if (blend.kernel == KernelFamily::Inverse) add_inverse(blend);
+  if (blend.kernel == KernelFamily::Cauchy) add_cauchy(blend);
+  if (blend.kernel == KernelFamily::Compact) add_compact(blend);
+  add_distances(blend);
+}
+
+void SumBounds::add(const SkeletonSample& s, double distance, double radius, int m) {
+  const double q = rho_ / distance;
+  log_slope_ = std::max(log_slope_, q < 1 ? m / (distance - rho_) * (1 + 1e-12) : inf);
+  if (!(q < 0.9) || !std::isfinite(s.value)) {
+    // Anything may happen above what the farthest distances leave.
+    unbounded_ = true;
+    if (std::isfinite(s.value) && distance > 0) low_ += s.value / integer_power(1 + q, m) * (1 - 1e-10);
+    return;
+  }
+  const double shrink = 1 / (1 - q), grown = integer_power(shrink, m + 2) * s.value / (distance * distance);
+  f_ += s.value;
+  low_ += s.value / integer_power(1 + q, m) * (1 - 1e-10);
+  gradient_ += s.gradient;
+  S_ += s.si_gradient;
+  J_ += s.si_jacobian;
+  second_ += m * (m + 1) * grown;
+  S_second_ += m * (m + 1) * (m + 2) * grown * radius * shrink / distance;
+  error_ += sample_error * s.value;
+  slope_error_ += sample_error * (m * s.value / distance);
+  S_error_ += sample_error * (m * s.value * radius / distance);
+}
+
+void SumBounds::add_between(const Interval& f, double S_norm, double log_slope) {
+  log_slope_ = std::max(log_slope_, log_slope);
+  has_slopes_ = false;
+  low_ += std::max(0.0, f.lo);
+  if (!(f.hi < inf) || !(S_norm < inf)) {
+    unbounded_ = true;
+    return;
+  }
+  f_ += f.middle();
+  error_ += 0.5 * f.width() * (1 + 1e-15) + 1e-15 * f.hi;
+  S_error_ += S_norm;
+}
+
+Interval SumBounds::side(std::size_t i) const { return Interval(box_.lower[i], box_.upper[i]) - Interval(center_[i]); }
+
+Interval SumBounds::f() const {
+  if (unbounded_) return {low_ * (1 - 1e-12), inf};
+  Interval x = pad(f_, error_ + 0.5 * second_ * rho_ * rho_);
+  for (std::size_t i = 0; i < 3; ++i) x += Interval(gradient_[i]) * side(i);
+  return {std::max({0.0, x.lo, low_ * (1 - 1e-12)}), std::max(0.0, x.hi)};
+}
+
+Vec3<Interval> SumBounds::gradient() const {
+  if (!has_slopes_ || unbounded_) return {Interval::everything(), Interval::everything(), Interval::everything()};
+  const double by = second_ * rho_ + slope_error_;
+  return {pad(gradient_.x, by), pad(gradient_.y, by), pad(gradient_.z, by)};
+}
+
+Vec3<Interval> SumBounds::S() const {
+  Vec3<Interval> s;
+  const double by = S_error_ + 0.5 * S_second_ * rho_ * rho_;
+  for (std::size_t i = 0; i < 3; ++i) {
+    s[i] = pad(S_[i], by);
+    for (std::size_t j = 0; j < 3; ++j) s[i] += Interval(J_.rows[i][j]) * side(j);
+  }
+  return s;
+}
+
+Interval SumBounds::J(std::size_t i, std::size_t j) const {
+  if (!has_slopes_ || unbounded_) return Interval::everything();
+  return pad(J_.rows[i][j], S_second_ * rho_ + sample_error * std::fabs(J_.rows[i][j]));
+}
+
+void SumBounds::add_inverse(const BlendField& blend) {
+  const int n = blend.degree;
+  const Vec3d& p = center_;
+  constexpr auto all = Derivatives::Second;
+  for (const auto& s : blend.points.skeletons) add(point_field<all>(s, p, n), distance_to(s, p), largest(s), n - 1);
+  for (const auto& s : blend.segments.skeletons) add(segment_field<all>(s, p, n), distance_to(s, p), largest(s), n);
+  for (const auto& s : blend.triangles.skeletons)
+    add(triangle_field<all>(s, p, n), distance_to(s, p), largest(s), n + 1);
+  for (const auto& s : blend.arcs.skeletons) add(arc_field<all>(s, p, n), distance_to(s, p), largest(s), n);
+  // R(H)^2 times a positive sum of |p - q|^-3, and H moves no faster than p: R changes by its slope times rho at most.
+  for (const auto& s : blend.cani_hornus_segments.skeletons) {
+    const double f = cani_hornus_field<Derivatives::ScaleInvariant>(s, p).value, d = distance_to(s, p);
+    if (!(d > rho_) || !std::isfinite(f)) {
+      add_between({0, inf}, inf, inf);
+      continue;
+    }
+    const double slope = std::fabs(s.radius_to - s.radius_from) / length(s.to - s.from), q = rho_ / d;
+    const double wider = std::min(1 + slope * rho_ / least(s), largest(s) / least(s)) * (1 + 1e-9);
+    add_between({f / (wider * wider * integer_power(1 + q, 3)), f * wider * wider / integer_power(1 - q, 3)}, inf,
+                (3 / (d - rho_) + 2 * slope / least(s)) * (1 + 1e-9));
+  }
+}
+
+// (1 + s^2 d^2 / tau^2)^(-m/2) is an inverse power of the distance in four dimensions, tau / s being the fourth.
+void SumBounds::add_cauchy(const BlendField& blend) {
+  const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+  const Vec3d& p = center_;
+  const auto lifted = [&](const auto& s) {
+    const double d = distance_to(s, p), w = least(s) / blend.kernel_shape;
+    return std::sqrt(d * d + w * w);
+  };
+  constexpr auto all = Derivatives::Second;
+  const int n = blend.degree;
+  for (const auto& s : blend.points.skeletons) add(point_field<all>(s, p, kernel), lifted(s), largest(s), n - 1);
+  for (const auto& s : blend.segments.skeletons) add(segment_field<all>(s, p, kernel), lifted(s), largest(s), n);
+  for (const auto& s : blend.triangles.skeletons) add(triangle_field<all>(s, p, kernel), lifted(s), largest(s), n + 1);
+  for (const auto& s : blend.arcs.skeletons) add(arc_field<all>(s, p, kernel), lifted(s), largest(s), n);
+}
+
+// f changes by rho sup |k'| times the share of the skeleton that the support can hold.
+void SumBounds::add_compact(const BlendField& blend) {
+  const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+  const auto all = [&](const auto& skeletons, int dimension, const auto& field) {
+    const Profile profile(kernel, dimension);
+    const double steep = steepest(profile, kernel);
+    for (const auto& s : skeletons) {
+      const double reach = kernel.shape * largest(s);
+      if (distance_to(s, center_) > rho_ + reach) continue;
+      const double f = field(s).value, per_length = steep * share(s, reach) / least(s) * (1 + 1e-9);
+      const double by = per_length * rho_ + 1e-10 * f;
+      add_between({std::max(0.0, f - by), f + by}, per_length * largest(s), inf);
+    }
+  };
+  constexpr auto value = Derivatives::ScaleInvariant;
+  const Vec3d& p = center_;
+  all(blend.points.skeletons, 0, [&](const PointSkeleton& s) { return point_field<value>(s, p, kernel); });
+  all(blend.segments.skeletons, 1, [&](const SegmentSkeleton& s) { return segment_field<value>(s, p, kernel); });
+  all(blend.triangles.skeletons, 2, [&](const TriangleSkeleton& s) { return triangle_field<value>(s, p, kernel); });
+  all(blend.arcs.skeletons, 1, [&](const ArcSkeleton& s) { return arc_field<value>(s, p, kernel); });
+}
+
+namespace {
+
+struct DistanceBounds {
+  Interval f;
+  double S_norm, log_slope;
+};
+
+// e = min d / radius changes by rho / radius at most, f = k(e), |S| = |k'(e)|.
+template <class Skeleton>
+DistanceBounds distance_bounds(const Skeleton& s, const SumBounds& sum, const Kernel& kernel) {
+  const double f = distance_field<Derivatives::ScaleInvariant>(s, sum.center(), kernel).value;
+  const double moved = sum.rho() / least(s);
+  if (kernel.family != KernelFamily::Inverse) {
+    const double steep = steepest(Profile(kernel, 0), kernel) * (1 + 1e-9), by = steep * moved + 1e-10 * f;
+    return {{std::max(0.0, f - by), f + by}, steep, f > by ? steep / (least(s) * (f - by)) : inf};
+  }
+  const int n = kernel.degree;
+  const double e = std::isfinite(f) ? pow(f, -1.0 / (n - 1)) : 0, by = moved + 1e-10 * e;
+  const double near = e - by, far = e + by;
+  if (!(near > 0)) return {{(1 - 1e-10) / integer_power(far, n - 1), inf}, inf, inf};
+  return {{(1 - 1e-10) / integer_power(far, n - 1), (1 + 1e-10) / integer_power(near, n - 1)},
+          (n - 1) * (1 + 1e-10) / integer_power(near, n),
+          (n - 1) * (1 + 1e-10) / (near * least(s))};
+}
+
+}  // namespace
+
+void SumBounds::add_distances(const BlendField& blend) {
+  const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+  const auto& list = blend.distance_segments;
+  for (std::size_t i = 0; i < list.size();) {
+    // The largest of a strand counts.
+    DistanceBounds all = distance_bounds(list.skeletons[i], *this, kernel);
+    const std::size_t first = i++;
+    for (; !list.strands.empty() && i < list.size() && list.strands[i] == list.strands[first]; ++i) {
+      const DistanceBounds other = distance_bounds(list.skeletons[i], *this, kernel);
+      all = {max(all.f, other.f), std::max(all.S_norm, other.S_norm), std::max(all.log_slope, other.log_slope)};
+    }
+    add_between(all.f, all.S_norm, all.log_slope);
+  }
+  const auto add_all = [&](const auto& skeletons) {
+    for (const auto& s : skeletons) {
+      const DistanceBounds b = distance_bounds(s, *this, kernel);
+      add_between(b.f, b.S_norm, b.log_slope);
+    }
+  };
+  add_all(blend.distance_triangles.skeletons);
+  add_all(blend.distance_arcs.skeletons);
+}
+
+}  // namespace marrow

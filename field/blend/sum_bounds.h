@@ -1,0 +1,53 @@
+// Bounds of the sums f and S = grad_S f of a blend and of their derivatives over a small box.
+#pragma once
+
+#include "field/blend/blend_field.h"
+#include "field/math/box3.h"
+#include "field/number/interval.h"
+
+namespace marrow {
+
+/// Sums over primitives of an exact sample in the middle of the box and of what it may change by on the way to any
+/// point of the box, which follows from the least distance of each primitive.
+class SumBounds {
+ public:
+  explicit SumBounds(const Box3&);
+  SumBounds(const BlendField&, const Box3&);
+
+  /// A primitive that is a positive sum of |p - q|^-m with all q at least `distance` away from the middle and radii up
+  /// to `radius`. Its k-th derivatives are at most m (m+1) ... (m+k-1) / distance^k times itself, and within rho of the
+  /// middle all distances shrink by 1 - rho / distance at most.   [tracing 3.1]
+  void add(const SkeletonSample&, double distance, double radius, int m);
+  /// A primitive of which only bounds of f and of |S| are known, and that of |grad ln f|.
+  void add_between(const Interval& f, double S_norm, double log_slope);
+
+  const Vec3d& center() const { return center_; }
+  /// Half the diagonal of the box.
+  double rho() const { return rho_; }
+  /// A skeleton is so near that f has no upper bound.
+  bool unbounded() const { return unbounded_; }
+  Interval f() const;
+  Vec3<Interval> gradient() const;
+  Vec3<Interval> S() const;
+  /// d S_i / d p_j
+  Interval J(std::size_t i, std::size_t j) const;
+  /// Largest |grad ln f_i| of any primitive anywhere in the box.
+  double log_slope() const { return log_slope_; }
+
+ private:
+  Interval side(std::size_t i) const;
+  void add_inverse(const BlendField&);
+  void add_cauchy(const BlendField&);
+  void add_compact(const BlendField&);
+  void add_distances(const BlendField&);
+
+  Box3 box_;
+  Vec3d center_;
+  double rho_;
+  double f_ = 0, low_ = 0, error_ = 0, slope_error_ = 0, S_error_ = 0, second_ = 0, S_second_ = 0, log_slope_ = 0;
+  Vec3d gradient_{}, S_{};
+  Matrix3 J_{};
+  bool unbounded_ = false, has_slopes_ = true;
+};
+
+}  // namespace marrow
