@@ -30,8 +30,11 @@ struct RenderCommand {
   std::optional<double> time_limit_s;
   std::optional<std::uint64_t> seed;
   std::optional<Crop> crop;
-  int threads = 0;  ///< 0: all that the process may use
-  std::string isa;  ///< empty: the best of this machine
+  int threads = 0;         ///< 0: all that the process may use
+  std::string isa;         ///< empty: the best of this machine
+  std::string embree_isa;  ///< empty: as `isa`
+  int tile_size = 16;
+  bool eager = false;  ///< cells are made ready before the first ray
   std::string view;
   std::optional<std::filesystem::path> ocio;
   ProgressStyle progress = ProgressStyle::Auto;

@@ -98,6 +98,10 @@ void describe(CLI::App& app, RenderCommand& c) {
   add_path(app, "--ocio", c.ocio, "OpenColorIO configuration; default: $OCIO, else the built-in one");
   app.add_option("--isa", c.isa, "Instruction set for tracing; the picture is the same for all")
       ->check(CLI::IsMember({"sse4", "avx2", "avx512"}));
+  // For tests: none of these changes the picture.
+  app.add_option("--embree-isa", c.embree_isa)->check(CLI::IsMember({"sse4", "avx2", "avx512"}))->group("");
+  app.add_option("--tile", c.tile_size)->check(CLI::Range(1, 4096))->group("");
+  app.add_flag("--eager", c.eager)->group("");
   auto* progress = app.add_option("--progress", c.progress, "auto, bar, plain or json (lines on standard error)");
   progress->transform(CLI::CheckedTransformer(styles).description(""))->type_name("STYLE");
   app.add_flag_callback(

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include "field/base/overloaded.h"
@@ -67,9 +68,21 @@ class Builder {
 
 std::string embree_config(const SurfaceOptions& options, int threads) {
   std::string config = "threads=" + std::to_string(threads);
-  if (options.isa == "sse4") config += ",isa=sse4.2";
-  else if (!options.isa.empty()) config += ",isa=" + options.isa;
+  const std::string& isa = options.embree_isa.empty() ? options.isa : options.embree_isa;
+  if (isa == "sse4") config += ",isa=sse4.2";
+  else if (!isa.empty()) config += ",isa=" + isa;
   return config;
+}
+
+// A ray through its middle makes an element make what it needs.
+void visit_all_elements(const Solid& solid) {
+  tbb::parallel_for(std::size_t{0}, solid.element_count(), [&](std::size_t element) {
+    const Box3 box = solid.element_box(element);
+    ElementLog unused;
+    solid.hit(element,
+              {{box.lower.x - length(box.size()), box.center().y, box.center().z}, UnitVec3::unchecked({1, 0, 0})},
+              true, unused);
+  });
 }
 
 }  // namespace
@@ -83,6 +96,8 @@ Result<std::unique_ptr<Surfaces>> build_surfaces(const SceneDescription& scene, 
     Builder builder(scene, options);
     builder.add_all();
     problems = std::move(builder.problems);
+    if (problems.empty() && options.eager)
+      for (const PlacedSolid& p : builder.solids) visit_all_elements(*p.solid);
     if (problems.empty())
       built =
           EmbreeSurfaces::make(std::move(builder.solids), std::move(builder.planes), embree_config(options, threads));
