@@ -11,6 +11,7 @@
 
 #include "renderer/app/crop.h"
 #include "renderer/app/exit_code.h"
+#include "renderer/bench/benchmark.h"
 #include "renderer/slice/slice.h"
 
 namespace marrow {
@@ -69,7 +70,14 @@ struct SliceCommand {
   SliceRequest request;
 };
 
-using Command = std::variant<RenderCommand, CheckCommand, SchemaCommand, ProbeCommand, InfoCommand, SliceCommand>;
+struct BenchCommand {
+  BenchSettings settings;
+  bool json = false;
+  std::optional<std::filesystem::path> write_to;  ///< a folder: scene files are written there and nothing is run
+};
+
+using Command =
+    std::variant<RenderCommand, CheckCommand, SchemaCommand, ProbeCommand, InfoCommand, SliceCommand, BenchCommand>;
 
 ExitCode run(const RenderCommand&);
 ExitCode run(const CheckCommand&);
@@ -77,5 +85,6 @@ ExitCode run(const SchemaCommand&);
 ExitCode run(const ProbeCommand&);
 ExitCode run(const InfoCommand&);
 ExitCode run(const SliceCommand&);
+ExitCode run(const BenchCommand&);
 
 }  // namespace marrow

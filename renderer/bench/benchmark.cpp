@@ -1,0 +1,296 @@
+// The workloads run, with Marrow and what there is of its peers in turns.
+#include "renderer/bench/benchmark.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "renderer/bench/child_process.h"
+#include "renderer/bench/dual_mesh.h"
+#include "renderer/bench/frames.h"
+#include "renderer/bench/povray_scene.h"
+#include "renderer/bench/prepared_scene.h"
+#include "renderer/bench/workload.h"
+#include "renderer/geometry/build_surfaces.h"
+#include "renderer/transport/render.h"
+
+namespace marrow {
+namespace {
+
+constexpr int bounces_of_a_path = 4;
+
+// A folder for scene files and pictures that goes away with everything in it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::error_code error;
+    std::string name = (std::filesystem::temp_directory_path(error) / "marrow-bench-XXXXXX").string();
+    if (!error && mkdtemp(name.data()) != nullptr) path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }  // empty: could not be made
+
+ private:
+  std::filesystem::path path_;
+};
+
+// An engine at work: what is timed goes into the lists, one entry a round.
+struct Racer {
+  EngineFigures figures;
+  std::unique_ptr<RayEngine> engine;
+  std::vector<Cost> frames, bounces;
+  std::vector<EngineHit> starts;
+};
+
+Cost per_ray(const Cost& cost, std::uint64_t rays) {
+  const auto n = static_cast<double>(rays);
+  return rays == 0 ? Cost{} : Cost{cost.wall_s / n, cost.cpu_s / n};
+}
+
+class Measurement {
+ public:
+  Measurement(const Workload& workload, const BenchSettings& settings, const std::filesystem::path& folder,
+              const std::function<void(const std::string&)>& tell)
+      : workload_(workload),
+        settings_(settings),
+        frame_{settings.size, settings.threads},
+        scene_(folder / (workload.name + ".yaml")),
+        tell_(tell) {}
+
+  Result<WorkloadFigures> run() {
+    out_.name = workload_.name;
+    out_.about = workload_.about;
+    out_.primitives = workload_.size();
+    say("reading and building");
+    if (auto status = write_scene(workload_, settings_.size, scene_); !status) return status.why();
+    auto ready = prepare_scene(scene_, {}, settings_.threads);
+    if (!ready) return ready.why();
+    add_marrow(*ready);
+    add_peers(*ready->surfaces);
+    race_frames(*ready);
+    race_bounces();
+    describe_surfaces(*ready);
+    compare_with_sum();
+    if (settings_.processes) race_processes();
+    for (Racer& r : racers_) out_.engines.push_back(std::move(r.figures));
+    return std::move(out_);
+  }
+
+ private:
+  void say(const std::string& what) const { tell_(workload_.name + ": " + what); }
+
+  void add_marrow(const PreparedScene& ready) {
+    out_.read_s = ready.read_s;
+    out_.build_s = ready.build_s;
+    out_.first_ray_s = ready.first_ray_s;
+    say("first frame");
+    auto engine = engine_of(*ready.surfaces);
+    out_.first_frame = cost_of([&] { shaded_frame(*engine, workload_, frame_); });
+    add_racer("marrow", workload_.size(), std::move(engine), ready.build_s);
+  }
+
+  void add_racer(const std::string& name, std::size_t primitives, std::unique_ptr<RayEngine> engine, double build_s) {
+    Racer& racer = racers_.emplace_back();
+    racer.figures.name = name;
+    racer.figures.primitives = primitives;
+    racer.figures.build_s = build_s;
+    racer.engine = std::move(engine);
+  }
+
+  void add_peer(const std::string& name, std::size_t primitives, std::unique_ptr<RayEngine> engine, double build_s) {
+    if (!engine) {
+      out_.missing.push_back(name + ": Embree could not build it");
+      return;
+    }
+    add_racer(name, primitives, std::move(engine), build_s);
+  }
+
+  void add_peers(const Surfaces& surfaces) {
+    std::unique_ptr<RayEngine> engine;
+    Cost build = cost_of([&] { engine = embree_round_cones(workload_, settings_.threads); });
+    add_peer("embree round cones", workload_.size(), std::move(engine), build.wall_s);
+    if (!(settings_.mesh_spacing > 0)) return;
+    say("meshing");
+    TriangleMesh mesh;
+    const Cost meshing = cost_of([&] { mesh = dual_mesh(surfaces, settings_.mesh_spacing); });
+    build = cost_of([&] { engine = embree_triangles(mesh, settings_.threads); });
+    add_peer("embree triangles", mesh.triangles.size(), std::move(engine), build.wall_s);
+    if (racers_.back().figures.primitives == mesh.triangles.size()) racers_.back().figures.mesh_s = meshing.wall_s;
+  }
+
+  // What one more sample of each pixel costs: four samples less two, so that all that is done once cancels.
+  Cost further_sample(const PreparedScene& ready) const {
+    RenderSettings render_settings = ready.description.render;
+    const auto film = [&](int samples) {
+      render_settings.samples_per_pixel = samples;
+      return cost_of([&] { render(ready.render_scene, render_settings, {.crop = {}, .threads = settings_.threads}); });
+    };
+    const Cost two = film(2), four = film(4);
+    return {(four.wall_s - two.wall_s) / 2, (four.cpu_s - two.cpu_s) / 2};
+  }
+
+  void race_frames(const PreparedScene& ready) {
+    std::vector<Cost> samples;
+    for (int round = 0; round < settings_.rounds; ++round) {
+      say(fmt::format("frames, round {} of {}", round + 1, settings_.rounds));
+      for (Racer& r : racers_)
+        r.frames.push_back(cost_of([&] { r.figures.frame = shaded_frame(*r.engine, workload_, frame_); }));
+      samples.push_back(further_sample(ready));
+    }
+    for (Racer& r : racers_) {
+      r.figures.frame_cost = median(r.frames);
+      r.figures.frame_ratio = median_ratio(racers_.front().frames, r.frames);
+    }
+    out_.sample = median(samples);
+    if (racers_.size() > 1) out_.sample_over_cones = median_ratio(samples, racers_[1].frames);
+  }
+
+  void race_bounces() {
+    for (Racer& r : racers_) r.starts = hits_of_frame(*r.engine, workload_, frame_);
+    for (int round = 0; round < settings_.rounds; ++round) {
+      say(fmt::format("bounces, round {} of {}", round + 1, settings_.rounds));
+      for (Racer& r : racers_) {
+        const Cost cost =
+            cost_of([&] { r.figures.bounces = diffuse_paths(*r.engine, r.starts, bounces_of_a_path, frame_); });
+        r.bounces.push_back(per_ray(cost, r.figures.bounces.rays));
+      }
+    }
+    for (Racer& r : racers_) {
+      r.figures.bounce_cost = median(r.bounces);
+      r.figures.bounce_ratio = median_ratio(racers_.front().bounces, r.bounces);
+    }
+  }
+
+  void describe_surfaces(const PreparedScene& ready) {
+    const SurfaceReport built = report(*ready.surfaces);
+    out_.cells = built.cells;
+    out_.blocks = built.blocks;
+    out_.bytes = built.bytes;
+    out_.largest_error = built.largest_error;
+  }
+
+  // The same frame with and without the correction, in turns.
+  void compare_with_sum() {
+    const auto sum = prepare_scene(scene_, {"objects.shape.field.blend.alpha=sum"}, settings_.threads);
+    if (!sum) {
+      out_.missing.push_back("alpha: sum, " + sum.why().front().message);
+      return;
+    }
+    say("plain sum");
+    const auto engine = engine_of(*sum->surfaces);
+    shaded_frame(*engine, workload_, frame_);
+    std::vector<Cost> corrected, plain;
+    for (int round = 0; round < settings_.rounds; ++round) {
+      corrected.push_back(cost_of([&] { shaded_frame(*racers_.front().engine, workload_, frame_); }));
+      plain.push_back(cost_of([&] { shaded_frame(*engine, workload_, frame_); }));
+    }
+    out_.corrected_over_sum = median_ratio(corrected, plain);
+  }
+
+  void race_processes() {
+    const auto povray = find_program("povray");
+    const auto blob = std::filesystem::path(scene_).replace_extension(".pov");
+    const bool with_povray = povray && settings_.povray && write_povray_blob(workload_, blob);
+    if (!povray && settings_.povray) out_.missing.push_back("POV-Ray: not installed");
+    for (const int samples : {1, settings_.samples}) {
+      if (samples > 1 && !settings_.many_samples) continue;
+      const int rounds = samples > 1 ? 1 : settings_.rounds;
+      std::vector<std::optional<ChildResult>> ours, theirs;
+      for (int round = 0; round < rounds; ++round) {
+        say(fmt::format("whole processes, {} spp, round {} of {}", samples, round + 1, rounds));
+        ours.push_back(run_program(this_program(), marrow_arguments(samples)));
+        if (with_povray) theirs.push_back(run_program(*povray, povray_arguments(blob, samples)));
+      }
+      add_processes("marrow", samples, ours, ours);
+      if (with_povray) add_processes("povray blob", samples, theirs, ours);
+    }
+  }
+
+  std::vector<std::string> marrow_arguments(int samples) const {
+    return {"render", scene_.string(),         "-o", std::filesystem::path(scene_).replace_extension(".exr").string(),
+            "--spp",  std::to_string(samples), "-t", std::to_string(settings_.threads),
+            "--quiet"};
+  }
+  // Sixteen samples are a regular grid of four by four for every pixel.
+  std::vector<std::string> povray_arguments(const std::filesystem::path& blob, int samples) const {
+    std::vector<std::string> words{"+I" + blob.string(),
+                                   "+O" + std::filesystem::path(blob).replace_extension(".png").string(),
+                                   fmt::format("+W{}", settings_.size),
+                                   fmt::format("+H{}", settings_.size),
+                                   fmt::format("+WT{}", settings_.threads),
+                                   "-D",
+                                   "+FN8"};
+    if (samples == 1) words.emplace_back("-A");
+    else words.insert(words.end(), {"+A0.0", "+AM1", "+R4"});
+    return words;
+  }
+
+  void add_processes(const std::string& name, int samples, const std::vector<std::optional<ChildResult>>& runs,
+                     const std::vector<std::optional<ChildResult>>& of_marrow) {
+    std::vector<Cost> costs, ours;
+    std::size_t peak = 0;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (!runs[i] || !of_marrow[i]) {
+        out_.missing.push_back(fmt::format("{} with {} spp: did not end well", name, samples));
+        return;
+      }
+      costs.push_back(runs[i]->cost);
+      ours.push_back(of_marrow[i]->cost);
+      peak = std::max(peak, runs[i]->peak_bytes);
+    }
+    out_.processes.push_back({name, samples, median(costs), peak, median_ratio(costs, ours)});
+  }
+
+  const Workload& workload_;
+  const BenchSettings& settings_;
+  const FrameSettings frame_;
+  const std::filesystem::path scene_;
+  const std::function<void(const std::string&)>& tell_;
+  std::vector<Racer> racers_;  // Marrow first, then the round cones
+  WorkloadFigures out_;
+};
+
+Result<std::vector<Workload>> chosen(const BenchSettings& settings) {
+  std::vector<Workload> workloads;
+  for (const std::string& name : settings.workloads.empty() ? workload_names() : settings.workloads) {
+    auto workload = workload_named(name);
+    if (!workload) return workload.why();
+    workloads.push_back(std::move(*workload));
+  }
+  return workloads;
+}
+
+}  // namespace
+
+Result<std::vector<WorkloadFigures>> run_benchmark(const BenchSettings& settings,
+                                                   const std::function<void(const std::string&)>& tell) {
+  const auto workloads = chosen(settings);
+  if (!workloads) return workloads.why();
+  const TemporaryFolder folder;
+  if (folder.path().empty()) return failure("cannot make a folder for temporary files");
+  std::vector<WorkloadFigures> all;
+  const auto measure = [&](const Workload& workload, const BenchSettings& how) -> Status {
+    auto figures = Measurement(workload, how, folder.path(), tell).run();
+    if (!figures) return figures.why();
+    all.push_back(std::move(*figures));
+    return Done{};
+  };
+  for (const Workload& w : *workloads)
+    if (auto status = measure(w, settings); !status) return status.why();
+  BenchSettings scaling = settings;
+  scaling.mesh_spacing = 0;
+  scaling.povray = false;
+  for (std::size_t count = 1000; count <= settings.largest_scaling; count *= 10)
+    if (auto status = measure(strands(count), scaling); !status) return status.why();
+  return all;
+}
+
+}  // namespace marrow

@@ -1,0 +1,108 @@
+// Workloads by name, their bounds, and their scene files.
+#include <algorithm>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include "field/math/elementary.h"
+#include "renderer/bench/workload.h"
+
+namespace marrow {
+namespace {
+
+// From so many segments on they stand in an SWC file, which is read faster and is shorter.
+constexpr std::size_t many = 20'000;
+
+struct Named {
+  const char* name;
+  Workload (*make)();
+};
+constexpr Named table[] = {{"w1", creature}, {"w2", hair}, {"w3", balls}};
+
+std::string text(const Vec3d& p) { return fmt::format("[{:.10g}, {:.10g}, {:.10g}]", p.x, p.y, p.z); }
+
+void write_head(std::ostream& out, const Workload& w, int film_size) {
+  const double fov_deg = 2 * atan(w.tan_half_fov) * 57.29577951308232;
+  fmt::print(out,
+             "# {}\nmarrow: 1\ncamera: {{from: {}, to: {}, fov: {:.10g}}}\nfilm: {{size: [{}, {}]}}\n"
+             "render: {{integrator: direct, spp: 16}}\n"
+             "lights:\n  - sun: {{direction: {}, angle: 0, irradiance: 3}}\n"
+             "materials:\n  white: {{diffuse: {{color: 0.8}}}}\n"
+             "objects:\n  - name: shape\n    material: white\n    field:\n      blend:\n        alpha: contact\n"
+             "        of:\n",
+             w.about, text(w.eye), text({w.eye.x, w.eye.y, 0}), fov_deg, film_size, film_size, text(w.toward_light));
+}
+
+void write_primitives(std::ostream& out, const Workload& w) {
+  for (const auto& s : w.segments)
+    fmt::print(out, "          - segment: {{from: {}, to: {}, radius: [{:.10g}, {:.10g}]}}\n", text(s.from), text(s.to),
+               s.radius_from, s.radius_to);
+  for (const auto& p : w.points)
+    fmt::print(out, "          - point: {{at: {}, radius: {:.10g}}}\n", text(p.at), p.radius);
+}
+
+// A segment that begins where the one before it ended continues its branch.
+void write_swc(std::ostream& out, const Workload& w) {
+  int id = 0;
+  const SegmentSkeleton* before = nullptr;
+  for (const auto& s : w.segments) {
+    if (before == nullptr || before->to != s.from || before->radius_to != s.radius_from)
+      fmt::print(out, "{} 0 {:.10g} {:.10g} {:.10g} {:.10g} -1\n", ++id, s.from.x, s.from.y, s.from.z, s.radius_from);
+    fmt::print(out, "{} 0 {:.10g} {:.10g} {:.10g} {:.10g} {}\n", id + 1, s.to.x, s.to.y, s.to.z, s.radius_to, id);
+    ++id;
+    before = &s;
+  }
+}
+
+Status written(std::ofstream& out, const std::filesystem::path& path) {
+  out.close();
+  if (out) return Done{};
+  return failure("cannot write " + path.string());
+}
+
+}  // namespace
+
+Box3 Workload::bounds() const {
+  Box3 box;
+  const auto include = [&](const Vec3d& p, double r) {
+    box.include(p - Vec3d{r, r, r});
+    box.include(p + Vec3d{r, r, r});
+  };
+  for (const auto& s : segments) {
+    include(s.from, s.radius_from);
+    include(s.to, s.radius_to);
+  }
+  for (const auto& p : points) include(p.at, p.radius);
+  return box;
+}
+
+std::vector<std::string> workload_names() {
+  std::vector<std::string> names;
+  for (const Named& n : table) names.emplace_back(n.name);
+  return names;
+}
+
+Result<Workload> workload_named(std::string_view name) {
+  for (const Named& n : table)
+    if (name == n.name) return n.make();
+  return failure("there is no workload \"" + std::string(name) + "\"; there are w1, w2 and w3");
+}
+
+Status write_scene(const Workload& w, int film_size, const std::filesystem::path& scene) {
+  std::ofstream out(scene);
+  write_head(out, w, film_size);
+  if (w.segments.size() < many) {
+    write_primitives(out, w);
+    return written(out, scene);
+  }
+  auto data = scene;
+  data.replace_extension(".swc");
+  fmt::print(out, "          - skeleton: {{file: {}}}\n", data.filename().string());
+  if (auto status = written(out, scene); !status) return status;
+  std::ofstream skeleton(data);
+  write_swc(skeleton, w);
+  return written(skeleton, data);
+}
+
+}  // namespace marrow
