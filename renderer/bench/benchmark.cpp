@@ -1,6 +1,7 @@
 // The workloads run, with Marrow and what there is of its peers in turns.
 #include "renderer/bench/benchmark.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
@@ -94,36 +95,39 @@ class Measurement {
     say("first frame");
     auto engine = engine_of(*ready.surfaces);
     out_.first_frame = cost_of([&] { shaded_frame(*engine, workload_, frame_); });
-    add_racer("marrow", workload_.size(), std::move(engine), ready.build_s);
+    EngineFigures figures;
+    figures.name = "marrow";
+    figures.primitives = workload_.size();
+    figures.build_s = ready.build_s;
+    add_racer(std::move(figures), std::move(engine));
   }
 
-  void add_racer(const std::string& name, std::size_t primitives, std::unique_ptr<RayEngine> engine, double build_s) {
+  // Null engines are told of, not raced.
+  void add_racer(EngineFigures figures, std::unique_ptr<RayEngine> engine) {
+    if (!engine) {
+      out_.missing.push_back(figures.name + ": Embree could not build it");
+      return;
+    }
     Racer& racer = racers_.emplace_back();
-    racer.figures.name = name;
-    racer.figures.primitives = primitives;
-    racer.figures.build_s = build_s;
+    racer.figures = std::move(figures);
     racer.engine = std::move(engine);
   }
 
-  void add_peer(const std::string& name, std::size_t primitives, std::unique_ptr<RayEngine> engine, double build_s) {
-    if (!engine) {
-      out_.missing.push_back(name + ": Embree could not build it");
-      return;
-    }
-    add_racer(name, primitives, std::move(engine), build_s);
-  }
-
   void add_peers(const Surfaces& surfaces) {
+    EngineFigures figures;
     std::unique_ptr<RayEngine> engine;
-    Cost build = cost_of([&] { engine = embree_round_cones(workload_, settings_.threads); });
-    add_peer("embree round cones", workload_.size(), std::move(engine), build.wall_s);
+    figures.name = "embree round cones";
+    figures.primitives = workload_.size();
+    figures.build_s = cost_of([&] { engine = embree_round_cones(workload_, settings_.threads); }).wall_s;
+    add_racer(figures, std::move(engine));
     if (!(settings_.mesh_spacing > 0)) return;
     say("meshing");
     TriangleMesh mesh;
-    const Cost meshing = cost_of([&] { mesh = dual_mesh(surfaces, settings_.mesh_spacing); });
-    build = cost_of([&] { engine = embree_triangles(mesh, settings_.threads); });
-    add_peer("embree triangles", mesh.triangles.size(), std::move(engine), build.wall_s);
-    if (racers_.back().figures.primitives == mesh.triangles.size()) racers_.back().figures.mesh_s = meshing.wall_s;
+    figures.name = "embree triangles";
+    figures.mesh_s = cost_of([&] { mesh = dual_mesh(surfaces, settings_.mesh_spacing); }).wall_s;
+    figures.primitives = mesh.triangles.size();
+    figures.build_s = cost_of([&] { engine = embree_triangles(mesh, settings_.threads); }).wall_s;
+    add_racer(figures, std::move(engine));
   }
 
   // What one more sample of each pixel costs: four samples less two, so that all that is done once cancels.
