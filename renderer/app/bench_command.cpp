@@ -1,4 +1,5 @@
 // marrow bench: the program and its peers on common scenes.
+#include <cstdio>
 #include <system_error>
 
 #include "renderer/app/bench_report.h"
@@ -20,9 +21,9 @@ ExitCode write_scenes(const BenchCommand& command) {
     if (!status) return report(status.why(), ExitCode::CannotCreate);
   }
   for (std::size_t count = 1000; count <= command.settings.largest_scaling; count *= 10) {
-    const auto workload = strands(count);
-    const auto status = write_scene(workload, command.settings.size, *command.write_to / (workload.name + ".yaml"));
-    if (!status) return report(status.why(), ExitCode::CannotCreate);
+    for (const Workload& w : {strands(count), tufts(count)})
+      if (auto status = write_scene(w, command.settings.size, *command.write_to / (w.name + ".yaml")); !status)
+        return report(status.why(), ExitCode::CannotCreate);
   }
   return ExitCode::Ok;
 }
@@ -31,9 +32,16 @@ ExitCode write_scenes(const BenchCommand& command) {
 
 ExitCode run(const BenchCommand& command) {
   if (command.write_to) return write_scenes(command);
-  const auto figures = run_benchmark(command.settings, [](const std::string& what) { complain(what + '\n'); });
+  if (!command.json) say(bench_text(command.settings));
+  const auto figures = run_benchmark(
+      command.settings, [](const std::string& what) { complain(what + '\n'); },
+      [&](const WorkloadFigures& w) {
+        if (command.json) return;
+        say(bench_text(w));
+        std::fflush(stdout);
+      });
   if (!figures) return report(figures.why(), ExitCode::Internal);
-  say(command.json ? bench_json(command.settings, *figures) : bench_text(command.settings, *figures));
+  if (command.json) say(bench_json(command.settings, *figures));
   return ExitCode::Ok;
 }
 

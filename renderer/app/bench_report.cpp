@@ -59,7 +59,9 @@ Json json(const WorkloadFigures& w) {
            {"first_frame", json(w.first_frame)},
            {"further_sample", json(w.sample)},
            {"further_sample_over_round_cones", json(w.sample_over_cones)},
-           {"corrected_over_plain_sum", json(w.corrected_over_sum)}};
+           {"rules", Json::array()}};
+  for (const auto& rule : w.rules)
+    out["rules"].push_back({{"alpha", rule.alpha}, {"over_plain_sum", json(rule.over_sum)}});
   out["engines"] = Json::array();
   for (const auto& e : w.engines) out["engines"].push_back(json(e));
   out["processes"] = Json::array();
@@ -81,7 +83,9 @@ std::string text(const ProcessFigures& p) {
                      p.ratio.wall);
 }
 
-std::string text(const WorkloadFigures& w) {
+}  // namespace
+
+std::string bench_text(const WorkloadFigures& w) {
   std::string out = fmt::format("{}: {}\n", w.name, w.about);
   const auto line = [&](const char* name, const std::string& value) {
     out += fmt::format("  {:<26}{}\n", name, value);
@@ -94,7 +98,8 @@ std::string text(const WorkloadFigures& w) {
   line("memory of the surfaces", fmt::format("{:.1f} MiB", static_cast<double>(w.bytes) / (1 << 20)));
   line("one further sample", both(w.sample) + fmt::format("; {:.2f} times round cones (cpu {:.2f})",
                                                           w.sample_over_cones.wall, w.sample_over_cones.cpu));
-  line("corrected over plain sum", fmt::format("{:.3f} (cpu)", w.corrected_over_sum.cpu));
+  for (const auto& rule : w.rules)
+    line(("alpha: " + rule.alpha).c_str(), fmt::format("{:.3f} times the plain sum (cpu)", rule.over_sum.cpu));
   const RayCounts& frame = w.engines.front().frame;
   line("evaluations per ray",
        fmt::format("{:.2f}, {:.2f} of bounces", per(double(frame.evaluations), frame.rays),
@@ -111,14 +116,10 @@ std::string text(const WorkloadFigures& w) {
   return out + '\n';
 }
 
-}  // namespace
-
-std::string bench_text(const BenchSettings& settings, const std::vector<WorkloadFigures>& all) {
-  std::string out = fmt::format(
+std::string bench_text(const BenchSettings& settings) {
+  return fmt::format(
       "{0} x {0} pixels, {1} threads, medians of {2}; a frame is a ray a pixel and a shadow ray a lit hit\n\n",
       settings.size, settings.threads, settings.rounds);
-  for (const auto& w : all) out += text(w);
-  return out;
 }
 
 std::string bench_json(const BenchSettings& settings, const std::vector<WorkloadFigures>& all) {

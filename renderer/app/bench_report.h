@@ -8,8 +8,9 @@
 
 namespace marrow {
 
-/// A paragraph for each workload.
-std::string bench_text(const BenchSettings&, const std::vector<WorkloadFigures>&);
+/// What is measured, and a paragraph for a workload.
+std::string bench_text(const BenchSettings&);
+std::string bench_text(const WorkloadFigures&);
 
 /// One object; the names of figures end with their unit.
 std::string bench_json(const BenchSettings&, const std::vector<WorkloadFigures>&);

@@ -79,7 +79,7 @@ class Measurement {
     race_frames(*ready);
     race_bounces();
     describe_surfaces(*ready);
-    compare_with_sum();
+    compare_rules();
     if (settings_.processes) race_processes();
     for (Racer& r : racers_) out_.engines.push_back(std::move(r.figures));
     return std::move(out_);
@@ -118,7 +118,7 @@ class Measurement {
     std::unique_ptr<RayEngine> engine;
     figures.name = "embree round cones";
     figures.primitives = workload_.size();
-    figures.build_s = cost_of([&] { engine = embree_round_cones(workload_, settings_.threads); }).wall_s;
+    figures.build_s = cost_of([&] { engine = embree_round_cones(workload_.flattened(), settings_.threads); }).wall_s;
     add_racer(figures, std::move(engine));
     if (!(settings_.mesh_spacing > 0)) return;
     say("meshing");
@@ -142,6 +142,7 @@ class Measurement {
   }
 
   void race_frames(const PreparedScene& ready) {
+    further_sample(ready);  // samples beside the pixels' middles enter cells of their own
     std::vector<Cost> samples;
     for (int round = 0; round < settings_.rounds; ++round) {
       say(fmt::format("frames, round {} of {}", round + 1, settings_.rounds));
@@ -181,22 +182,32 @@ class Measurement {
     out_.largest_error = built.largest_error;
   }
 
-  // The same frame with and without the correction, in turns.
-  void compare_with_sum() {
-    const auto sum = prepare_scene(scene_, {"objects.shape.field.blend.alpha=sum"}, settings_.threads);
-    if (!sum) {
-      out_.missing.push_back("alpha: sum, " + sum.why().front().message);
-      return;
+  // The same frame with the plain sum and with other rules, in turns.
+  void compare_rules() {
+    const auto with = [&](const std::string& alpha) -> std::optional<PreparedScene> {
+      say("alpha: " + alpha);
+      const std::string blend = workload_.places.empty() ? "objects.shape.field.blend" : "defs.body.blend";
+      auto ready = prepare_scene(scene_, {blend + ".alpha=" + alpha}, settings_.threads);
+      if (ready) return std::move(*ready);
+      out_.missing.push_back("alpha: " + alpha + ": " + ready.why().front().message);
+      return std::nullopt;
+    };
+    const auto sum = with("sum");
+    if (!sum) return;
+    const auto plain = engine_of(*sum->surfaces);
+    shaded_frame(*plain, workload_, frame_);
+    for (const std::string rule : {"contact", "directional"}) {
+      const auto ready = with(rule);
+      if (!ready) continue;
+      const auto engine = engine_of(*ready->surfaces);
+      shaded_frame(*engine, workload_, frame_);
+      std::vector<Cost> ours, sums;
+      for (int round = 0; round < settings_.rounds; ++round) {
+        ours.push_back(cost_of([&] { shaded_frame(*engine, workload_, frame_); }));
+        sums.push_back(cost_of([&] { shaded_frame(*plain, workload_, frame_); }));
+      }
+      out_.rules.push_back({rule, median_ratio(ours, sums)});
     }
-    say("plain sum");
-    const auto engine = engine_of(*sum->surfaces);
-    shaded_frame(*engine, workload_, frame_);
-    std::vector<Cost> corrected, plain;
-    for (int round = 0; round < settings_.rounds; ++round) {
-      corrected.push_back(cost_of([&] { shaded_frame(*racers_.front().engine, workload_, frame_); }));
-      plain.push_back(cost_of([&] { shaded_frame(*engine, workload_, frame_); }));
-    }
-    out_.corrected_over_sum = median_ratio(corrected, plain);
   }
 
   void race_processes() {
@@ -275,7 +286,8 @@ Result<std::vector<Workload>> chosen(const BenchSettings& settings) {
 }  // namespace
 
 Result<std::vector<WorkloadFigures>> run_benchmark(const BenchSettings& settings,
-                                                   const std::function<void(const std::string&)>& tell) {
+                                                   const std::function<void(const std::string&)>& tell,
+                                                   const std::function<void(const WorkloadFigures&)>& found) {
   const auto workloads = chosen(settings);
   if (!workloads) return workloads.why();
   const TemporaryFolder folder;
@@ -284,6 +296,7 @@ Result<std::vector<WorkloadFigures>> run_benchmark(const BenchSettings& settings
   const auto measure = [&](const Workload& workload, const BenchSettings& how) -> Status {
     auto figures = Measurement(workload, how, folder.path(), tell).run();
     if (!figures) return figures.why();
+    found(*figures);
     all.push_back(std::move(*figures));
     return Done{};
   };
@@ -293,7 +306,8 @@ Result<std::vector<WorkloadFigures>> run_benchmark(const BenchSettings& settings
   scaling.mesh_spacing = 0;
   scaling.povray = false;
   for (std::size_t count = 1000; count <= settings.largest_scaling; count *= 10)
-    if (auto status = measure(strands(count), scaling); !status) return status.why();
+    for (const Workload& w : {strands(count), tufts(count)})
+      if (auto status = measure(w, scaling); !status) return status.why();
   return all;
 }
 

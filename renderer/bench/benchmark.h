@@ -49,6 +49,12 @@ struct ProcessFigures {
   Ratio ratio;  ///< its cost over Marrow's with the same number of samples; of Marrow itself 1
 };
 
+/// A rule for `alpha` against the plain sum.
+struct RuleFigures {
+  std::string alpha;
+  Ratio over_sum;  ///< of frames
+};
+
 struct WorkloadFigures {
   std::string name, about;
   std::size_t primitives = 0;
@@ -61,13 +67,15 @@ struct WorkloadFigures {
   Cost sample;                         ///< one further sample of each pixel in a whole render, film and light included
   Ratio sample_over_cones;             ///< `sample` over the frame of Embree's round cones
   std::vector<EngineFigures> engines;  ///< Marrow first
-  Ratio corrected_over_sum;            ///< frame with `alpha: contact` over the frame with `alpha: sum`
+  std::vector<RuleFigures> rules;      ///< of `alpha`
   std::vector<ProcessFigures> processes;  ///< Marrow first
   std::vector<std::string> missing;       ///< what could not be compared, and why
 };
 
-/// `tell` hears what is being done. Errors: an unknown workload, a folder for temporary files that cannot be used.
+/// `tell` hears what is being done, `found` each workload's figures as soon as they are there. Errors: an unknown
+/// workload, a folder for temporary files that cannot be used.
 Result<std::vector<WorkloadFigures>> run_benchmark(const BenchSettings&,
-                                                   const std::function<void(const std::string&)>& tell);
+                                                   const std::function<void(const std::string&)>& tell,
+                                                   const std::function<void(const WorkloadFigures&)>& found);
 
 }  // namespace marrow

@@ -22,8 +22,14 @@ struct Workload {
   Vec3d toward_light;  ///< unit length
   std::vector<SegmentSkeleton> segments;
   std::vector<PointSkeleton> points;
+  /// When not empty: the primitives are one body, placed at each of these by a translation, each place a blend of its
+  /// own.
+  std::vector<Vec3d> places;
 
-  std::size_t size() const { return segments.size() + points.size(); }
+  /// Of all places together.
+  std::size_t size() const { return (segments.size() + points.size()) * (places.empty() ? 1 : places.size()); }
+  /// The same scene with every place's own copy of the primitives, as one blend.
+  Workload flattened() const;
   /// Of all primitives with their radii.
   Box3 bounds() const;
 };
@@ -37,12 +43,16 @@ Workload balls();
 /// that the sum of the shadows, length times radius, stays the same.
 Workload strands(std::size_t count);
 
+/// Tufts of 1000 segments each, the same one placed by transforms, `count` segments in all; they shrink like strands.
+Workload tufts(std::size_t count);
+
 /// Errors: an unknown name; the hint lists those there are.
 Result<Workload> workload_named(std::string_view name);
 std::vector<std::string> workload_names();
 
 /// A scene file for Marrow: the workload as one blend (`alpha: contact`) of white diffuse material under its sun, with
-/// direct light only. Large ones put their skeletons into an SWC file beside it.
+/// direct light only; placed ones as a union of uses of one blend. Large ones put their skeletons into an SWC file
+/// beside it.
 Status write_scene(const Workload&, int film_size, const std::filesystem::path& scene);
 
 }  // namespace marrow

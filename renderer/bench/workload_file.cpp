@@ -28,10 +28,20 @@ void write_head(std::ostream& out, const Workload& w, int film_size) {
              "# {}\nmarrow: 1\ncamera: {{from: {}, to: {}, fov: {:.10g}}}\nfilm: {{size: [{}, {}]}}\n"
              "render: {{integrator: direct, spp: 16}}\n"
              "lights:\n  - sun: {{direction: {}, angle: 0, irradiance: 3}}\n"
-             "materials:\n  white: {{diffuse: {{color: 0.8}}}}\n"
-             "objects:\n  - name: shape\n    material: white\n    field:\n      blend:\n        alpha: contact\n"
-             "        of:\n",
+             "materials:\n  white: {{diffuse: {{color: 0.8}}}}\n",
              w.about, text(w.eye), text({w.eye.x, w.eye.y, 0}), fov_deg, film_size, film_size, text(w.toward_light));
+}
+
+// One blend as the field of the object; or, of a placed workload, by name, and the places that use it.
+void write_blend_head(std::ostream& out, const Workload& w) {
+  fmt::print(out, "{}      blend:\n        alpha: contact\n        of:\n",
+             w.places.empty() ? "objects:\n  - name: shape\n    material: white\n    field:\n" : "defs:\n  body:\n");
+}
+void write_places(std::ostream& out, const Workload& w) {
+  if (w.places.empty()) return;
+  fmt::print(out, "objects:\n  - name: shape\n    material: white\n    field:\n      union:\n        of:\n");
+  for (const Vec3d& p : w.places)
+    fmt::print(out, "          - transform: {{translate: {}, of: {{use: body}}}}\n", text(p));
 }
 
 void write_primitives(std::ostream& out, const Workload& w) {
@@ -74,7 +84,23 @@ Box3 Workload::bounds() const {
     include(s.to, s.radius_to);
   }
   for (const auto& p : points) include(p.at, p.radius);
-  return box;
+  if (places.empty()) return box;
+  Box3 all;
+  for (const Vec3d& p : places) all.include(Box3{box.lower + p, box.upper + p});
+  return all;
+}
+
+Workload Workload::flattened() const {
+  if (places.empty()) return *this;
+  Workload flat = *this;
+  flat.places.clear();
+  flat.segments.clear();
+  flat.points.clear();
+  for (const Vec3d& place : places) {
+    for (const auto& s : segments) flat.segments.push_back({s.from + place, s.to + place, s.radius_from, s.radius_to});
+    for (const auto& p : points) flat.points.push_back({p.at + place, p.radius});
+  }
+  return flat;
 }
 
 std::vector<std::string> workload_names() {
@@ -92,8 +118,10 @@ Result<Workload> workload_named(std::string_view name) {
 Status write_scene(const Workload& w, int film_size, const std::filesystem::path& scene) {
   std::ofstream out(scene);
   write_head(out, w, film_size);
+  write_blend_head(out, w);
   if (w.segments.size() < many) {
     write_primitives(out, w);
+    write_places(out, w);
     return written(out, scene);
   }
   auto data = scene;

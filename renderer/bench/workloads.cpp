@@ -167,7 +167,8 @@ Workload creature() {
              .tan_half_fov = .219,
              .toward_light = sun(),
              .segments = {},
-             .points = {}};
+             .points = {},
+             .places = {}};
   const Limb body = smooth({{{-1.55, -1.35, -.5}, .40},
                             {{-.7, -1.05, .1}, .47},
                             {{.25, -.55, .3}, .5},
@@ -207,7 +208,8 @@ Workload hair() {
              .tan_half_fov = .197,
              .toward_light = sun(),
              .segments = {},
-             .points = {}};
+             .points = {},
+             .places = {}};
   PythonRandom random(10000);
   const double golden_angle = pi * (3 - std::sqrt(5.0));
   for (int k = 0; k < 500; ++k) {  // the scalp is the upper 72 % of a sphere
@@ -232,7 +234,8 @@ Workload balls() {
              .tan_half_fov = .238,
              .toward_light = sun(),
              .segments = {},
-             .points = {}};
+             .points = {},
+             .places = {}};
   PythonRandom random(200);
   while (w.points.size() < 200) {
     Vec3d p;
@@ -249,7 +252,8 @@ Workload strands(std::size_t count) {
              .tan_half_fov = .238,
              .toward_light = sun(),
              .segments = {},
-             .points = {}};
+             .points = {},
+             .places = {}};
   PythonRandom random(static_cast<std::uint32_t>(count));
   const double size = std::sqrt(2000.0 / static_cast<double>(count));
   while (w.segments.size() < count) {
@@ -260,6 +264,32 @@ Workload strands(std::size_t count) {
     for (std::size_t i = 0; i < 3; ++i) direction[i] = random.uniform(-1, 1);
     add_strand(w, random, {root, normalize(direction), .19 * size, .15 * size, .9, random.uniform(0, 6.28)}, size);
   }
+  return w;
+}
+
+Workload tufts(std::size_t count) {
+  constexpr std::size_t in_one = 1000;
+  Workload w{.name = "tufts-" + std::to_string(count),
+             .about = std::to_string(count) + " segments in tufts of 1000",
+             .eye = {0, 0, 20},
+             .tan_half_fov = .238,
+             .toward_light = sun(),
+             .segments = {},
+             .points = {},
+             .places = {}};
+  PythonRandom random(static_cast<std::uint32_t>(count + 1));
+  const double size = std::sqrt(2000.0 / static_cast<double>(count));
+  const auto in_ball = [&](double radius) {
+    Vec3d p;
+    do
+      for (std::size_t i = 0; i < 3; ++i) p[i] = random.uniform(-radius, radius);
+    while (length(p) > radius);
+    return p;
+  };
+  while (w.segments.size() < in_one)
+    add_strand(w, random,
+               {in_ball(.5 * size), normalize(in_ball(1)), .19 * size, .15 * size, .9, random.uniform(0, 6.28)}, size);
+  while (w.places.size() * in_one < count) w.places.push_back(five_decimals(in_ball(4)));
   return w;
 }
 

@@ -29,8 +29,9 @@ class BenchTest(ProgramTest):
         self.assertGreater(w1["memory_bytes"], 0)
         for figure in ("read_wall_seconds", "build_wall_seconds", "file_to_first_ray_wall_seconds"):
             self.assertGreater(w1[figure], 0)
-        self.assertGreater(w1["further_sample_over_round_cones"]["cpu"], 0)
-        self.assertGreater(w1["corrected_over_plain_sum"]["cpu"], 0)
+        self.assertIn("cpu", w1["further_sample_over_round_cones"])  # a difference: noise in so small a picture
+        self.assertEqual(w1["rules"][0]["alpha"], "contact")
+        self.assertGreater(w1["rules"][0]["over_plain_sum"]["cpu"], 0)
         names = [process["name"] for process in w1["processes"]]
         self.assertEqual(names, ["marrow", "povray blob"] if shutil.which("povray") else ["marrow"])
         self.assertGreater(w1["processes"][0]["peak_memory_bytes"], 1 << 20)
@@ -47,7 +48,7 @@ class BenchTest(ProgramTest):
 
     def test_workloads_can_be_written_and_rendered(self):
         self.expect(0, "bench", "w1", "--write", "scenes", "--size", "16", "--scaling", "1000")
-        self.assertEqual(sorted(p.name for p in (self.folder / "scenes").iterdir()), ["strands-1000.yaml", "w1.yaml"])
+        self.assertEqual(sorted(p.name for p in (self.folder / "scenes").iterdir()), ["strands-1000.yaml", "tufts-1000.yaml", "w1.yaml"])
         self.expect(0, "render", "scenes/w1.yaml", "--spp", "1", "-o", "w1.exr")
 
     def test_wrong_names_are_told(self):

@@ -16,7 +16,8 @@ Workload one_of_each() {
              .tan_half_fov = 0.2,
              .toward_light = {0, 0, 1},
              .segments = {},
-             .points = {}};
+             .points = {},
+             .places = {}};
   w.segments.push_back({{-2, 0, 0}, {-1, 0, 0}, 0.5, 0.5});
   w.points.push_back({{2, 0, 0}, 1});
   return w;

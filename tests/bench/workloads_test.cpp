@@ -71,6 +71,17 @@ TEST(Workloads, StrandsKeepTheirCoverage) {
   EXPECT_NEAR(shadow(many) / shadow(few), 1, 0.05);
 }
 
+TEST(Workloads, PlacedBodiesFlatten) {
+  const Workload w = tufts(3000), flat = w.flattened();
+  EXPECT_EQ(w.segments.size(), 1000u);
+  EXPECT_EQ(w.places.size(), 3u);
+  EXPECT_EQ(w.size(), 3000u);
+  EXPECT_EQ(flat.segments.size(), 3000u);
+  EXPECT_EQ(flat.segments[2000].from, w.segments[0].from + w.places[2]);
+  EXPECT_LT(length(flat.bounds().lower - w.bounds().lower), 1e-12);
+  EXPECT_LT(length(flat.bounds().upper - w.bounds().upper), 1e-12);
+}
+
 TEST(Workloads, BecomeScenes) {
   const auto folder = std::filesystem::temp_directory_path() / ("marrow-workloads-" + std::to_string(getpid()));
   std::filesystem::create_directory(folder);
