@@ -2,9 +2,7 @@
 #include "renderer/bench/benchmark.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,6 +12,7 @@
 #include "renderer/bench/frames.h"
 #include "renderer/bench/povray_scene.h"
 #include "renderer/bench/prepared_scene.h"
+#include "renderer/bench/temporary_folder.h"
 #include "renderer/bench/workload.h"
 #include "renderer/geometry/build_surfaces.h"
 #include "renderer/transport/render.h"
@@ -22,26 +21,6 @@ namespace marrow {
 namespace {
 
 constexpr int bounces_of_a_path = 4;
-
-// A folder for scene files and pictures that goes away with everything in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::error_code error;
-    std::string name = (std::filesystem::temp_directory_path(error) / "marrow-bench-XXXXXX").string();
-    if (!error && mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }  // empty: could not be made
-
- private:
-  std::filesystem::path path_;
-};
 
 // An engine at work: what is timed goes into the lists, one entry a round.
 struct Racer {

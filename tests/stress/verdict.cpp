@@ -135,34 +135,42 @@ void Parity::add(const Parity& b) {
   crossed += b.crossed;
   restarts += b.restarts;
   odd += b.odd;
+  odd_lost += b.odd_lost;
   odd_grazing += b.odd_grazing;
-  merge(offenders, b.offenders);
+  merge(odd_rays, b.odd_rays);
+  merge(lost_rays, b.lost_rays);
 }
 
 void count_crossings(const StressScene& scene, const Ray& line, Random& random, const char* family, Parity& p) {
   const double reach = near_cells(scene, line).t_max;
   const Ray there{line.origin, line.direction, 0, reach}, back = reversed(line, reach);
   if (scene.oracle().value(there.origin) >= 1 || scene.oracle().value(back.origin) >= 1) return;
-  const auto entry = scene.surfaces().first_hit(there), exit = scene.surfaces().first_hit(back);
+  RayRecord going, coming;
+  const auto entry = scene.surfaces().first_hit(there, going), exit = scene.surfaces().first_hit(back, coming);
   ++p.lines;
-  const auto one_way_only = [&](const Ray& ray, double t) {
-    ++p.odd;
+  // `ray` met surface at t; the record is that of the ray that met nothing the other way.
+  const auto one_way_only = [&](const Ray& ray, double t, const RayRecord& empty_handed) {
     const double depth = depth_after(scene, ray, t);
-    if (depth < grazing_excess) ++p.odd_grazing;
-    else note(p.offenders, text(scene, ray, family, "met only one way, inside", depth));
+    if (depth < grazing_excess) {
+      ++p.odd_grazing;
+      return;
+    }
+    ++(empty_handed.certified ? p.odd : p.odd_lost);
+    note(empty_handed.certified ? p.odd_rays : p.lost_rays,
+         text(scene, ray, family, "met only one way, inside", depth));
   };
   if (!entry && !exit) return;
   ++p.crossed;
-  if (!exit) return one_way_only(there, entry->t);
-  if (!entry) return one_way_only(back, exit->t);
+  if (!exit) return one_way_only(there, entry->t, coming);
+  if (!entry) return one_way_only(back, exit->t, going);
   const double first = entry->t, last = reach - exit->t;
   for (int i = 0; i < 3; ++i) {
     const double t = random.between(first, last);
     if (!(scene.oracle().value(line.at(t)) < 1 - grazing_excess)) continue;
     ++p.restarts;
     const Ray onward{line.at(t), line.direction, 0, reach - t}, backward{line.at(t), -line.direction, 0, t};
-    if (!scene.surfaces().first_hit(onward)) one_way_only(back, exit->t);
-    if (!scene.surfaces().first_hit(backward)) one_way_only(there, entry->t);
+    if (!scene.surfaces().first_hit(onward, going)) one_way_only(back, exit->t, going);
+    if (!scene.surfaces().first_hit(backward, coming)) one_way_only(there, entry->t, coming);
   }
 }
 

@@ -56,9 +56,13 @@ void judge(const StressScene&, const Ray&, const char* family, bool from_afar, V
 /// the exact field says are outside.
 struct Parity {
   std::uint64_t lines = 0, crossed = 0, restarts = 0;
-  std::uint64_t odd = 0;          ///< one way found surface where the other found none
-  std::uint64_t odd_grazing = 0;  ///< of those: the surface found is at most grazing_excess deep
-  std::vector<std::string> offenders;
+  /// One way found surface where the other found none and said that it is certified; more than grazing_excess deep.
+  std::uint64_t odd = 0;
+  /// The same, but the ray that found none says that a gap was not decided.
+  std::uint64_t odd_lost = 0;
+  /// One way found surface that is at most grazing_excess deep.
+  std::uint64_t odd_grazing = 0;
+  std::vector<std::string> odd_rays, lost_rays;
 
   void add(const Parity&);
 };
