@@ -1,6 +1,7 @@
 // Workloads by name, their bounds, and their scene files.
 #include <algorithm>
 #include <fstream>
+#include <span>
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -44,10 +45,26 @@ void write_places(std::ostream& out, const Workload& w) {
     fmt::print(out, "          - transform: {{translate: {}, of: {{use: body}}}}\n", text(p));
 }
 
+bool continues(const SegmentSkeleton& before, const SegmentSkeleton& s) {
+  return before.to == s.from && before.radius_to == s.radius_from;
+}
+
+// Segments that follow each other are one polyline, one strand for rules that ask for directions.
+void write_polyline(std::ostream& out, std::span<const SegmentSkeleton> chain) {
+  std::string points = text(chain.front().from), radii = fmt::format("{:.10g}", chain.front().radius_from);
+  for (const auto& s : chain) {
+    points += ", " + text(s.to);
+    radii += fmt::format(", {:.10g}", s.radius_to);
+  }
+  fmt::print(out, "          - polyline: {{points: [{}], radius: [{}]}}\n", points, radii);
+}
+
 void write_primitives(std::ostream& out, const Workload& w) {
-  for (const auto& s : w.segments)
-    fmt::print(out, "          - segment: {{from: {}, to: {}, radius: [{:.10g}, {:.10g}]}}\n", text(s.from), text(s.to),
-               s.radius_from, s.radius_to);
+  const std::span<const SegmentSkeleton> all = w.segments;
+  for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+    for (end = begin + 1; end < all.size() && continues(all[end - 1], all[end]);) ++end;
+    write_polyline(out, all.subspan(begin, end - begin));
+  }
   for (const auto& p : w.points)
     fmt::print(out, "          - point: {{at: {}, radius: {:.10g}}}\n", text(p.at), p.radius);
 }
@@ -57,7 +74,7 @@ void write_swc(std::ostream& out, const Workload& w) {
   int id = 0;
   const SegmentSkeleton* before = nullptr;
   for (const auto& s : w.segments) {
-    if (before == nullptr || before->to != s.from || before->radius_to != s.radius_from)
+    if (before == nullptr || !continues(*before, s))
       fmt::print(out, "{} 0 {:.10g} {:.10g} {:.10g} {:.10g} -1\n", ++id, s.from.x, s.from.y, s.from.z, s.radius_from);
     fmt::print(out, "{} 0 {:.10g} {:.10g} {:.10g} {:.10g} {}\n", id + 1, s.to.x, s.to.y, s.to.z, s.radius_to, id);
     ++id;

@@ -74,14 +74,22 @@ std::string embree_config(const SurfaceOptions& options, int threads) {
   return config;
 }
 
-// A ray through its middle makes an element make what it needs.
+// Elements make what they need when rays come: a lattice of rays along each axis.
 void visit_all_elements(const Solid& solid) {
+  constexpr int rays = 12;
   tbb::parallel_for(std::size_t{0}, solid.element_count(), [&](std::size_t element) {
     const Box3 box = solid.element_box(element);
-    ElementLog unused;
-    solid.hit(element,
-              {{box.lower.x - length(box.size()), box.center().y, box.center().z}, UnitVec3::unchecked({1, 0, 0})},
-              true, unused);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (int i = 0; i < rays * rays; ++i) {
+        const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+        Vec3d origin = box.lower, direction{};
+        origin[axis] -= box.size()[axis];
+        origin[u] += box.size()[u] * (i % rays + 0.5) / rays;
+        origin[v] += box.size()[v] * (i / rays + 0.5) / rays;
+        direction[axis] = 1;
+        ElementLog unused;
+        solid.hit(element, {origin, UnitVec3::unchecked(direction)}, false, unused);
+      }
   });
 }
 

@@ -15,7 +15,8 @@ struct SurfaceOptions {
   std::string isa;  ///< "sse4", "avx2", "avx512"; empty: the best of this machine. Pictures do not depend on it.
   std::string embree_isa{};  ///< for the search of boxes alone, the same names; empty: that of `isa`
   int threads = 0;           ///< for building; 0: as many as the process may use
-  /// Everything that is otherwise made when the first ray needs it is made at once. Pictures do not depend on it.
+  /// What is otherwise made when the first ray needs it is made at once, as far as a lattice of rays meets it. Pictures
+  /// do not depend on it.
   bool eager = false;
 };
 

@@ -51,13 +51,15 @@ Ray tangent(Random& random, const StressScene& scene) {
   return through(lerp(s.from, s.to, at) + aside * (radius * random.between(0.8, 1.2)), direction, scene);
 }
 
-// Through a point of a face, an edge or a corner of a cell, along an axis or across.
+// Through a point of a face, an edge or a corner of a cell, along an axis or across. Cells lie at dyadic fractions of
+// the boxes that can be asked for.
 Ray cell_boundary(Random& random, const StressScene& s) {
   const Box3 box = s.random_cell(random);
   Vec3d target;
   for (std::size_t i = 0; i < 3; ++i) {
     const double kind = random.between(0, 1);
-    target[i] = kind < 0.4 ? box.lower[i] : kind < 0.8 ? box.upper[i] : random.between(box.lower[i], box.upper[i]);
+    const double at = kind < 0.8 ? random.whole(0, 16) / 16.0 : random.between(0, 1);
+    target[i] = box.lower[i] + box.size()[i] * at;
   }
   if (random.between(0, 1) < 0.6) return through(target, axis(random), s);
   // In the plane of a face
