@@ -54,11 +54,11 @@ class Measurement {
     auto ready = prepare_scene(scene_, {}, settings_.threads);
     if (!ready) return ready.why();
     add_marrow(*ready);
+    describe_surfaces(*ready);
     add_peers(*ready->surfaces);
     race_frames(*ready);
     race_bounces();
-    describe_surfaces(*ready);
-    compare_rules();
+    if (settings_.rules) compare_rules();
     if (settings_.processes) race_processes();
     for (Racer& r : racers_) out_.engines.push_back(std::move(r.figures));
     return std::move(out_);
@@ -138,7 +138,10 @@ class Measurement {
   }
 
   void race_bounces() {
-    for (Racer& r : racers_) r.starts = hits_of_frame(*r.engine, workload_, frame_);
+    for (Racer& r : racers_) {
+      r.starts = hits_of_frame(*r.engine, workload_, frame_);
+      diffuse_paths(*r.engine, r.starts, bounces_of_a_path, frame_);  // bounces enter cells of their own
+    }
     for (int round = 0; round < settings_.rounds; ++round) {
       say(fmt::format("bounces, round {} of {}", round + 1, settings_.rounds));
       for (Racer& r : racers_) {
@@ -289,7 +292,7 @@ Result<std::vector<WorkloadFigures>> run_benchmark(const BenchSettings& settings
     if (auto status = measure(w, settings); !status) return status.why();
   BenchSettings scaling = settings;
   scaling.mesh_spacing = 0;
-  scaling.povray = false;
+  scaling.povray = scaling.rules = false;
   for (std::size_t count = 1000; count <= settings.largest_scaling; count *= 10)
     for (const Workload& w : {strands(count), tufts(count)})
       if (auto status = measure(w, scaling); !status) return status.why();

@@ -22,6 +22,7 @@ struct BenchSettings {
   double mesh_spacing = 0.02;  ///< grid of the meshed rival, scene units; 0 leaves it out
   bool processes = true;       ///< whole processes too: this program, and POV-Ray where it is installed
   bool povray = true;
+  bool rules = true;                ///< rules for `alpha` against the plain sum
   bool many_samples = false;        ///< whole processes with `samples` samples too: minutes with POV-Ray
   std::size_t largest_scaling = 0;  ///< strands of 10^3, 10^4, ... segments up to this many; 0: none
 };
@@ -61,8 +62,8 @@ struct WorkloadFigures {
   double read_s = 0, build_s = 0;      ///< the scene's text; surfaces
   double first_ray_s = 0;              ///< from the file to the first answer
   Cost first_frame;                    ///< while cells are made ready
-  std::size_t cells = 0, blocks = 0;   ///< all cells; those that rays entered
-  std::size_t bytes = 0;               ///< of the surfaces after the frames
+  std::size_t cells = 0, blocks = 0;   ///< cells; those that the first frame's rays entered
+  std::size_t bytes = 0;               ///< of the surfaces, after the first frame
   double largest_error = 0;            ///< certified bound of the traced field's error
   Cost sample;                         ///< one further sample of each pixel in a whole render, film and light included
   Ratio sample_over_cones;             ///< `sample` over the frame of Embree's round cones
