@@ -32,7 +32,7 @@ struct BenchSettings {
 struct EngineFigures {
   std::string name;
   std::size_t primitives = 0;  ///< cones, spheres or triangles; of Marrow segments and points
-  double mesh_s = 0;           ///< wall time of meshing, by the rays of Marrow
+  double mesh_s = 0;           ///< wall time of meshing, by the rays of Marrow from the file on
   double build_s = 0;          ///< wall time until rays can be traced, without meshing
   RayCounts frame;
   Cost frame_cost;
