@@ -1,17 +1,15 @@
 // The workloads run, with Marrow and what there is of its peers in turns.
 #include "renderer/bench/benchmark.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "renderer/bench/child_process.h"
 #include "renderer/bench/dual_mesh.h"
 #include "renderer/bench/frames.h"
-#include "renderer/bench/povray_scene.h"
 #include "renderer/bench/prepared_scene.h"
+#include "renderer/bench/process_race.h"
 #include "renderer/bench/temporary_folder.h"
 #include "renderer/bench/workload.h"
 #include "renderer/geometry/build_surfaces.h"
@@ -59,7 +57,7 @@ class Measurement {
     race_frames(*ready);
     race_bounces();
     if (settings_.rules) compare_rules();
-    if (settings_.processes) race_processes();
+    if (settings_.processes) race_processes(workload_, settings_, scene_, tell_, out_);
     for (Racer& r : racers_) out_.engines.push_back(std::move(r.figures));
     return std::move(out_);
   }
@@ -205,60 +203,6 @@ class Measurement {
       }
       out_.rules.push_back({rule.name, median_ratio(ours, sums)});
     }
-  }
-
-  void race_processes() {
-    const auto povray = find_program("povray");
-    const auto blob = std::filesystem::path(scene_).replace_extension(".pov");
-    const bool with_povray = povray && settings_.povray && write_povray_blob(workload_, blob);
-    if (!povray && settings_.povray) out_.missing.push_back("POV-Ray: not installed");
-    for (const int samples : {1, settings_.samples}) {
-      if (samples > 1 && !settings_.many_samples) continue;
-      const int rounds = samples > 1 ? 1 : settings_.rounds;
-      std::vector<std::optional<ChildResult>> ours, theirs;
-      for (int round = 0; round < rounds; ++round) {
-        say(fmt::format("whole processes, {} spp, round {} of {}", samples, round + 1, rounds));
-        ours.push_back(run_program(this_program(), marrow_arguments(samples)));
-        if (with_povray) theirs.push_back(run_program(*povray, povray_arguments(blob, samples)));
-      }
-      add_processes("marrow", samples, ours, ours);
-      if (with_povray) add_processes("povray blob", samples, theirs, ours);
-    }
-  }
-
-  std::vector<std::string> marrow_arguments(int samples) const {
-    return {"render", scene_.string(),         "-o", std::filesystem::path(scene_).replace_extension(".exr").string(),
-            "--spp",  std::to_string(samples), "-t", std::to_string(settings_.threads),
-            "--quiet"};
-  }
-  // Sixteen samples are a regular grid of four by four for every pixel.
-  std::vector<std::string> povray_arguments(const std::filesystem::path& blob, int samples) const {
-    std::vector<std::string> words{"+I" + blob.string(),
-                                   "+O" + std::filesystem::path(blob).replace_extension(".png").string(),
-                                   fmt::format("+W{}", settings_.size),
-                                   fmt::format("+H{}", settings_.size),
-                                   fmt::format("+WT{}", settings_.threads),
-                                   "-D",
-                                   "+FN8"};
-    if (samples == 1) words.emplace_back("-A");
-    else words.insert(words.end(), {"+A0.0", "+AM1", "+R4"});
-    return words;
-  }
-
-  void add_processes(const std::string& name, int samples, const std::vector<std::optional<ChildResult>>& runs,
-                     const std::vector<std::optional<ChildResult>>& of_marrow) {
-    std::vector<Cost> costs, ours;
-    std::size_t peak = 0;
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      if (!runs[i] || !of_marrow[i]) {
-        out_.missing.push_back(fmt::format("{} with {} spp: did not end well", name, samples));
-        return;
-      }
-      costs.push_back(runs[i]->cost);
-      ours.push_back(of_marrow[i]->cost);
-      peak = std::max(peak, runs[i]->peak_bytes);
-    }
-    out_.processes.push_back({name, samples, median(costs), peak, median_ratio(costs, ours)});
   }
 
   const Workload& workload_;
