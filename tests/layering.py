@@ -34,13 +34,14 @@ ARROWS = {
     "renderer/geometry": ["field", "materials/rgb.h", "renderer/scene/scene_description.h"],
     "renderer/transport": ["field/base", "field/math", "materials", "renderer/scene/scene_description.h",
                            "renderer/geometry/surfaces.h", "renderer/output"],
+    "renderer/bench": ["field", "renderer/scene", "renderer/geometry", "renderer/transport"],
     "renderer/app": ["field", "materials", "renderer"],
     "tests": ["field", "materials", "renderer"],
 }
 
 # A library's headers appear only where the library is adapted.
 LIBRARIES = {
-    r"embree3/": ["renderer/geometry/"],
+    r"embree3/": ["renderer/geometry/", "renderer/bench/embree_engine.cpp"],
     r"(tbb|oneapi)/": ["field/trace/", "renderer/"],
     r"(OpenEXR|Imath)/|Imf|Imath|half\.h": ["renderer/output/exr.cpp"],
     r"OpenImageIO/": ["renderer/output/image_file.cpp"],

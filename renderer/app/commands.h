@@ -11,6 +11,7 @@
 
 #include "renderer/app/crop.h"
 #include "renderer/app/exit_code.h"
+#include "renderer/bench/benchmark.h"
 #include "renderer/slice/slice.h"
 
 namespace marrow {
@@ -30,8 +31,11 @@ struct RenderCommand {
   std::optional<double> time_limit_s;
   std::optional<std::uint64_t> seed;
   std::optional<Crop> crop;
-  int threads = 0;  ///< 0: all that the process may use
-  std::string isa;  ///< empty: the best of this machine
+  int threads = 0;         ///< 0: all that the process may use
+  std::string isa;         ///< empty: the best of this machine
+  std::string embree_isa;  ///< empty: as `isa`
+  int tile_size = 16;
+  bool eager = false;  ///< cells are made ready before the first ray
   std::string view;
   std::optional<std::filesystem::path> ocio;
   ProgressStyle progress = ProgressStyle::Auto;
@@ -67,7 +71,14 @@ struct SliceCommand {
   SliceRequest request;
 };
 
-using Command = std::variant<RenderCommand, CheckCommand, SchemaCommand, ProbeCommand, InfoCommand, SliceCommand>;
+struct BenchCommand {
+  BenchSettings settings;
+  bool json = false;
+  std::optional<std::filesystem::path> write_to;  ///< a folder: scene files are written there and nothing is run
+};
+
+using Command =
+    std::variant<RenderCommand, CheckCommand, SchemaCommand, ProbeCommand, InfoCommand, SliceCommand, BenchCommand>;
 
 ExitCode run(const RenderCommand&);
 ExitCode run(const CheckCommand&);
@@ -75,5 +86,6 @@ ExitCode run(const SchemaCommand&);
 ExitCode run(const ProbeCommand&);
 ExitCode run(const InfoCommand&);
 ExitCode run(const SliceCommand&);
+ExitCode run(const BenchCommand&);
 
 }  // namespace marrow

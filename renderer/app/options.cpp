@@ -12,6 +12,7 @@
 
 #include "renderer/app/print.h"
 #include "renderer/app/text.h"
+#include "renderer/bench/workload.h"
 #include "renderer/output/colormap.h"
 #include "renderer/scene/suggestion.h"
 
@@ -98,6 +99,10 @@ void describe(CLI::App& app, RenderCommand& c) {
   add_path(app, "--ocio", c.ocio, "OpenColorIO configuration; default: $OCIO, else the built-in one");
   app.add_option("--isa", c.isa, "Instruction set for tracing; the picture is the same for all")
       ->check(CLI::IsMember({"sse4", "avx2", "avx512"}));
+  // For tests: none of these changes the picture.
+  app.add_option("--embree-isa", c.embree_isa)->check(CLI::IsMember({"sse4", "avx2", "avx512"}))->group("");
+  app.add_option("--tile", c.tile_size)->check(CLI::Range(1, 4096))->group("");
+  app.add_flag("--eager", c.eager)->group("");
   auto* progress = app.add_option("--progress", c.progress, "auto, bar, plain or json (lines on standard error)");
   progress->transform(CLI::CheckedTransformer(styles).description(""))->type_name("STYLE");
   app.add_flag_callback(
@@ -176,6 +181,40 @@ void describe(CLI::App& app, SliceCommand& c) {
       "  marrow slice neuron.yaml --plane y=-1.5 -o field.exr --window -2,-2,2,2 --width 2048");
 }
 
+void describe(CLI::App& app, BenchCommand& c) {
+  app.add_option("workloads", c.settings.workloads, "w1 (867 segments), w2 (10,000 segments), w3 (200 points); all")
+      ->check(CLI::IsMember(workload_names()))
+      ->type_name("NAME");
+  app.add_flag("--json", c.json, "As JSON");
+  app.add_option("--size", c.settings.size, "Pixels of a side; default 1024")
+      ->check(CLI::Range(16, 8192))
+      ->type_name("N");
+  app.add_option("-t,--threads", c.settings.threads, "Threads of every engine; default 2")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+  app.add_option("--rounds", c.settings.rounds, "Turns of which medians are taken; default 3")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N");
+  app.add_option("--mesh", c.settings.mesh_spacing, "Grid of the meshed rival, scene units; 0: none; default 0.02")
+      ->check(CLI::Range(0.0, 1.0))
+      ->type_name("H");
+  app.add_flag("!--no-processes", c.settings.processes, "Leaves out whole processes, and so POV-Ray");
+  app.add_flag("--long", c.settings.many_samples, "Whole processes with --spp samples too: minutes with POV-Ray");
+  app.add_option("--spp", c.settings.samples, "Samples of the long processes; default 16, POV-Ray's always 16")
+      ->check(CLI::Range(2, 4096))
+      ->type_name("N");
+  app.add_option("--scaling", c.settings.largest_scaling, "Also 1000, 10,000, ... segments, up to N")
+      ->check(CLI::Range(1000, 1000000))
+      ->type_name("N");
+  add_path(app, "--write", c.write_to, "Only writes the workloads into this folder, as scenes")->type_name("FOLDER");
+  app.footer(
+      "Examples:\n  marrow bench                        all workloads, and the peers that are installed\n"
+      "  marrow bench w1 --long              with 16 samples a pixel against POV-Ray\n"
+      "  marrow bench --scaling 1000000      what grows with the number of segments\n"
+      "  marrow bench w2 --write scenes      w2.yaml, to render or to profile\n"
+      "Engines run in turns; ratios are medians over the turns. `cpu` is user and system time of all threads.");
+}
+
 ExitCode usage_error(const std::string& message, const std::string& hint, const std::string& help) {
   complain(fmt::format("marrow: {}{}\n  {} --help explains\n", message, hint.empty() ? "" : "; " + hint, help));
   return ExitCode::Usage;
@@ -225,6 +264,7 @@ std::variant<Command, ExitCode> parse_options(int argc, const char* const* argv)
   ProbeCommand probe;
   InfoCommand info;
   SliceCommand slice;
+  BenchCommand bench;
   const auto add = [&app](const char* name, const char* help, auto& command) {
     auto* sub = app.add_subcommand(name, help);
     describe(*sub, command);
@@ -237,6 +277,7 @@ std::variant<Command, ExitCode> parse_options(int argc, const char* const* argv)
       {add("slice", "Paints a field on an axis plane", slice), [&] { return slice; }},
       {add("probe", "Evaluates a field at points", probe), [&] { return probe; }},
       {add("schema", "Prints the scene format as JSON Schema", schema), [&] { return schema; }},
+      {add("bench", "Measures itself and its peers on common scenes", bench), [&] { return bench; }},
   };
 
   const auto names = names_of(app.get_subcommands({}));

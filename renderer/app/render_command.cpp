@@ -53,6 +53,10 @@ RenderSettings settings_over(const RenderCommand& command, RenderSettings settin
   return settings;
 }
 
+SurfaceOptions surface_options(const RenderCommand& command) {
+  return {.isa = command.isa, .embree_isa = command.embree_isa, .threads = command.threads, .eager = command.eager};
+}
+
 // A problem with a place is the scene's; one without is the machine's: an instruction set that is not there.
 ExitCode exit_code_of_failed_build(const Diagnostics& why) {
   const bool in_scene = std::any_of(why.begin(), why.end(), [](const auto& d) { return !d.where.file.empty(); });
@@ -80,7 +84,7 @@ ExitCode run(const RenderCommand& command) {
 
   ProgressLine progress(command.progress);
   progress.phase("building");
-  const auto surfaces = build_surfaces(*scene, {.isa = command.isa, .threads = command.threads});
+  const auto surfaces = build_surfaces(*scene, surface_options(command));
   progress.clear();
   if (!surfaces) return report(surfaces.why(), record.sources, exit_code_of_failed_build(surfaces.why()));
   const auto compiled = compile_transport(*scene, **surfaces, load_environment);
@@ -90,6 +94,7 @@ ExitCode run(const RenderCommand& command) {
   const Film film = render(*compiled, settings,
                            {.crop = ready.crop,
                             .threads = command.threads,
+                            .tile_size = command.tile_size,
                             .time_limit_s = command.time_limit_s,
                             .progress = [&](const Progress& p) { progress.show(p); },
                             .interrupted = &interruption_flag()});

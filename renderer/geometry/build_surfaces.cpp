@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include "field/base/overloaded.h"
@@ -76,9 +77,29 @@ class Builder {
 
 std::string embree_config(const SurfaceOptions& options, int threads) {
   std::string config = "threads=" + std::to_string(threads);
-  if (options.isa == "sse4") config += ",isa=sse4.2";
-  else if (!options.isa.empty()) config += ",isa=" + options.isa;
+  const std::string& isa = options.embree_isa.empty() ? options.isa : options.embree_isa;
+  if (isa == "sse4") config += ",isa=sse4.2";
+  else if (!isa.empty()) config += ",isa=" + isa;
   return config;
+}
+
+// Elements make what they need when rays come: a lattice of rays along each axis.
+void visit_all_elements(const Solid& solid) {
+  constexpr int rays = 12;
+  tbb::parallel_for(std::size_t{0}, solid.element_count(), [&](std::size_t element) {
+    const Box3 box = solid.element_box(element);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (int i = 0; i < rays * rays; ++i) {
+        const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+        Vec3d origin = box.lower, direction{};
+        origin[axis] -= box.size()[axis];
+        origin[u] += box.size()[u] * (i % rays + 0.5) / rays;
+        origin[v] += box.size()[v] * (i / rays + 0.5) / rays;
+        direction[axis] = 1;
+        ElementLog unused;
+        solid.hit(element, {origin, UnitVec3::unchecked(direction)}, false, unused);
+      }
+  });
 }
 
 }  // namespace
@@ -92,6 +113,8 @@ Result<std::unique_ptr<Surfaces>> build_surfaces(const SceneDescription& scene, 
     Builder builder(scene, options);
     builder.add_all();
     problems = std::move(builder.problems);
+    if (problems.empty() && options.eager)
+      for (const PlacedSolid& p : builder.solids) visit_all_elements(*p.solid);
     if (problems.empty())
       built =
           EmbreeSurfaces::make(std::move(builder.solids), std::move(builder.planes), embree_config(options, threads));

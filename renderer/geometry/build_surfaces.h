@@ -13,7 +13,11 @@ namespace marrow {
 
 struct SurfaceOptions {
   std::string isa;  ///< "sse4", "avx2", "avx512"; empty: the best of this machine. Pictures do not depend on it.
-  int threads = 0;  ///< for building; 0: as many as the process may use
+  std::string embree_isa{};  ///< for the search of boxes alone, the same names; empty: that of `isa`
+  int threads = 0;           ///< for building; 0: as many as the process may use
+  /// What is otherwise made when the first ray needs it is made at once, as far as a lattice of rays meets it. Pictures
+  /// do not depend on it.
+  bool eager = false;
 };
 
 struct SurfaceReport {

@@ -162,7 +162,7 @@ int next_count(const Job& job, int done, double elapsed_s) {
 }
 
 void render_passes(const Job& job, Film& film, Meter& meter) {
-  const std::vector<PixelWindow> tiles = tiles_of(film.data());
+  const std::vector<PixelWindow> tiles = tiles_of(film.data(), std::max(job.options.tile_size, 1));
   for (int done = 0; done < job.samples;) {
     const int count = next_count(job, done, meter.elapsed());
     if (count == 0) {

@@ -7,8 +7,6 @@
 namespace marrow {
 namespace {
 
-constexpr int tile_size = 16;
-
 // Bit i goes to bit 2i.
 std::uint64_t spread_bits(std::uint64_t x) {
   x = (x | x << 16) & 0x0000ffff0000ffffu;
@@ -24,11 +22,11 @@ std::uint64_t morton(const PixelWindow& tile) {
 
 }  // namespace
 
-std::vector<PixelWindow> tiles_of(const PixelWindow& window) {
+std::vector<PixelWindow> tiles_of(const PixelWindow& window, int size) {
   std::vector<PixelWindow> tiles;
-  for (int y = window.y0; y < window.y1; y += tile_size)
-    for (int x = window.x0; x < window.x1; x += tile_size)
-      tiles.push_back({x, y, std::min(x + tile_size, window.x1), std::min(y + tile_size, window.y1)});
+  for (int y = window.y0; y < window.y1; y += size)
+    for (int x = window.x0; x < window.x1; x += size)
+      tiles.push_back({x, y, std::min(x + size, window.x1), std::min(y + size, window.y1)});
   std::ranges::sort(tiles, {}, morton);
   return tiles;
 }

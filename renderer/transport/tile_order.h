@@ -7,8 +7,8 @@
 
 namespace marrow {
 
-/// Squares of 16 pixels in Morton order, cut to the window: neighbours in the list are neighbours in the picture, and
-/// so meet the same geometry.
-std::vector<PixelWindow> tiles_of(const PixelWindow& window);
+/// Squares of `size` pixels in Morton order, cut to the window: neighbours in the list are neighbours in the picture,
+/// and so meet the same geometry.
+std::vector<PixelWindow> tiles_of(const PixelWindow& window, int size);
 
 }  // namespace marrow

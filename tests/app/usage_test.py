@@ -8,7 +8,7 @@ class UsageTest(ProgramTest):
     def test_help_and_version_end_well(self):
         self.assertRegex(self.expect(0, "--version").stdout, r"^marrow \d+\.\d+\.\d+\n$")
         self.assertIn("render", self.expect(0, "--help").stdout)
-        for command in ("render", "check", "schema", "probe", "info", "slice"):
+        for command in ("render", "check", "schema", "probe", "info", "slice", "bench"):
             self.assertIn("Example", self.expect(0, command, "--help").stdout)
 
     def test_an_unknown_command_names_the_nearest(self):

@@ -15,6 +15,9 @@ namespace marrow::test {
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) { std::cout << "  seed " << seed << '\n'; }
+  /// For tests that draw many generators from one seed, and print that.
+  struct Silent {};
+  Random(std::uint64_t seed, Silent) : state_(seed) {}
 
   double between(double low, double high) {
     state_ += 0x9e3779b97f4a7c15u;

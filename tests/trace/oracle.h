@@ -31,7 +31,7 @@ class Oracle {
   struct Local;
   Local local(const Vec3d& p, const Vec3d& direction) const;
   bool outside(const Local&, double step) const;
-  double certified_step(const Local&, double limit) const;
+  double certified_step(const Local&, double limit, double& share) const;
 
   const BlendField& blend_;
   Correction correction_;

@@ -45,16 +45,18 @@ TEST(Film, PictureHasTheChannelsThatItsHeaderNames) {
   Film film({0, 0, 3, 2}, {1, 0, 3, 2});
   film.at(2, 1).add({.radiance = Rgb(1, 2, 3), .albedo = Rgb(0.25), .covered = true});
   film.at(2, 1).centre.object = 7;
+  film.at(1, 0).centre.certified = false;
   const Picture picture = to_picture(film);
   std::string names;
   for (const Channel& c : picture.channels) names += c.name + ' ';
   EXPECT_EQ(names,
             "R G B A Z N.X N.Y N.Z P.X P.Y P.Z albedo.R albedo.G albedo.B variance.R variance.G variance.B object "
-            "samples field.evals ");
+            "samples field.evals field.certified ");
   EXPECT_EQ(picture.data, (PixelWindow{1, 0, 3, 2}));
   EXPECT_EQ(std::get<0>(picture.channels[1].samples), (std::vector<float>{0, 0, 0, 2}));
   EXPECT_EQ(std::get<0>(picture.channels[4].samples)[0], std::numeric_limits<float>::infinity());
   EXPECT_EQ(std::get<1>(picture.channels[17].samples), (std::vector<std::uint32_t>{0, 0, 0, 7}));
+  EXPECT_EQ(std::get<1>(picture.channels.back().samples), (std::vector<std::uint32_t>{0, 1, 1, 1}));
 }
 
 }  // namespace

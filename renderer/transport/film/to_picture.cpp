@@ -42,6 +42,7 @@ Picture to_picture(const Film& film) {
   add_channel<std::uint32_t>(picture, film, "object", [](const PixelSums& p) { return p.centre.object; });
   add_channel<std::uint32_t>(picture, film, "samples", [](const PixelSums& p) { return p.samples(); });
   add_channel<std::uint32_t>(picture, film, "field.evals", [](const PixelSums& p) { return p.centre.evaluations; });
+  add_channel<std::uint32_t>(picture, film, "field.certified", [](const PixelSums& p) { return p.centre.certified; });
   return picture;
 }
 

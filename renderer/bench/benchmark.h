@@ -1,0 +1,82 @@
+// The workloads run, with Marrow and what there is of its peers in turns.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "field/base/result.h"
+#include "renderer/bench/cost.h"
+#include "renderer/bench/ray_engine.h"
+
+namespace marrow {
+
+struct BenchSettings {
+  std::vector<std::string> workloads;  ///< names of workload.h; empty: all
+  int size = 1024;                     ///< pixels of a side
+  int threads = 2;
+  int rounds = 3;              ///< of which medians are taken
+  int samples = 16;            ///< of the longer whole run
+  double mesh_spacing = 0.02;  ///< grid of the meshed rival, scene units; 0 leaves it out
+  bool processes = true;       ///< whole processes too: this program, and POV-Ray where it is installed
+  bool povray = true;
+  bool rules = true;                ///< rules for `alpha` against the plain sum
+  bool many_samples = false;        ///< whole processes with `samples` samples too: minutes with POV-Ray
+  std::size_t largest_scaling = 0;  ///< strands of 10^3, 10^4, ... segments up to this many; 0: none
+};
+
+/// An engine on a workload. Cost of a frame: a ray through each pixel and a shadow ray from each hit that faces the
+/// sun.
+struct EngineFigures {
+  std::string name;
+  std::size_t primitives = 0;  ///< cones, spheres or triangles; of Marrow segments and points
+  double mesh_s = 0;           ///< wall time of meshing, by the rays of Marrow from the file on
+  double build_s = 0;          ///< wall time until rays can be traced, without meshing
+  RayCounts frame;
+  Cost frame_cost;
+  RayCounts bounces;  ///< rays of diffuse paths from the frame's hits
+  Cost bounce_cost;
+  Ratio frame_ratio, bounce_ratio;  ///< Marrow's cost of a ray over this engine's; of Marrow itself 1
+};
+
+/// A whole process, from its start to its end.
+struct ProcessFigures {
+  std::string name;
+  int samples = 0;  ///< per pixel
+  Cost cost;
+  std::size_t peak_bytes = 0;
+  Ratio ratio;  ///< its cost over Marrow's with the same number of samples; of Marrow itself 1
+};
+
+/// A rule for `alpha` against the plain sum.
+struct RuleFigures {
+  std::string alpha;
+  Ratio over_sum;  ///< of frames
+};
+
+struct WorkloadFigures {
+  std::string name, about;
+  std::size_t primitives = 0;
+  double read_s = 0, build_s = 0;      ///< the scene's text; surfaces
+  double first_ray_s = 0;              ///< from the file to the first answer
+  Cost first_frame;                    ///< while cells are made ready
+  std::size_t cells = 0, blocks = 0;   ///< cells; those that the first frame's rays entered
+  std::size_t bytes = 0;               ///< of the surfaces, after the first frame
+  double largest_error = 0;            ///< certified bound of the traced field's error
+  Cost sample;                         ///< one further sample of each pixel in a whole render, film and light included
+  Ratio sample_over_cones;             ///< `sample` over the frame of Embree's round cones
+  std::vector<EngineFigures> engines;  ///< Marrow first
+  std::vector<RuleFigures> rules;      ///< of `alpha`
+  std::vector<ProcessFigures> processes;  ///< Marrow first
+  std::vector<std::string> missing;       ///< what could not be compared, and why
+};
+
+/// `tell` hears what is being done, `found` each workload's figures as soon as they are there. Errors: an unknown
+/// workload, a folder for temporary files that cannot be used.
+Result<std::vector<WorkloadFigures>> run_benchmark(const BenchSettings&,
+                                                   const std::function<void(const std::string&)>& tell,
+                                                   const std::function<void(const WorkloadFigures&)>& found);
+
+}  // namespace marrow

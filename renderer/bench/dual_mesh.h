@@ -1,0 +1,15 @@
+// The surface as triangles: what a renderer that polygonises would trace.
+#pragma once
+
+#include "renderer/bench/ray_engine.h"
+#include "renderer/geometry/surfaces.h"
+
+namespace marrow {
+
+/// A dual mesh on a grid of the given spacing: one vertex in each cube that the surface crosses, the mean of its
+/// crossings with the cube's edges; these are roots that the tracer found, so the mesh has its exactness at the edges.
+/// [Gibson 1998, surface nets] Hollows that no path along grid edges reaches from outside are left out, and so are
+/// sheets thinner than an edge.
+TriangleMesh dual_mesh(const Surfaces&, double spacing);
+
+}  // namespace marrow

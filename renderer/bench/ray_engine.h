@@ -1,0 +1,53 @@
+// What a program that finds surfaces along rays must answer to be measured.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "field/math/ray.h"
+#include "renderer/bench/workload.h"
+#include "renderer/geometry/surfaces.h"
+
+namespace marrow {
+
+/// How much was asked of an engine, and what it answered. Frames of several threads are added up.
+struct RayCounts {
+  std::uint64_t rays = 0;         ///< for the nearest hit
+  std::uint64_t hits = 0;         ///< of these rays
+  std::uint64_t shadow_rays = 0;  ///< for any hit
+  std::uint64_t evaluations = 0;  ///< of the field, for the nearest hits; 0 for engines without a field
+  std::uint64_t uncertified = 0;  ///< rays for which it is not proved that nothing was skipped
+  double light = 0;               ///< sum of all shades: nothing may be optimised away
+
+  RayCounts& operator+=(const RayCounts&);
+};
+
+struct EngineHit {
+  Vec3d position, normal;  ///< outward, unit length
+  Vec3d outside;           ///< where rays that leave the surface begin
+};
+
+/// Safe to use from many threads.
+class RayEngine {
+ public:
+  virtual ~RayEngine() = default;
+  virtual bool first_hit(const Ray&, EngineHit&, RayCounts&) const = 0;
+  virtual bool occluded(const Ray&) const = 0;
+};
+
+/// The surfaces of this project; they must outlive the engine.
+std::unique_ptr<RayEngine> engine_of(const Surfaces&);
+
+struct TriangleMesh {
+  std::vector<std::array<float, 3>> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Embree's own primitives under its own hierarchy, single rays, best build quality: round linear curves (cones with
+/// spherical ends) and spheres, without any blend. Null when Embree cannot build them.
+std::unique_ptr<RayEngine> embree_round_cones(const Workload&, int threads);
+std::unique_ptr<RayEngine> embree_triangles(const TriangleMesh&, int threads);
+
+}  // namespace marrow

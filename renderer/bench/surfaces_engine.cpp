@@ -1,0 +1,40 @@
+// The surfaces of this project as an engine to be measured.
+#include "renderer/bench/ray_engine.h"
+
+namespace marrow {
+namespace {
+
+class SurfacesEngine final : public RayEngine {
+ public:
+  explicit SurfacesEngine(const Surfaces& surfaces) : surfaces_(surfaces) {}
+
+  bool first_hit(const Ray& ray, EngineHit& hit, RayCounts& counts) const override {
+    RayRecord record;
+    const auto found = surfaces_.first_hit(ray, record);
+    counts.evaluations += record.evaluations;
+    counts.uncertified += record.certified ? 0 : 1;
+    if (!found) return false;
+    hit = {found->position, found->normal.vec(), found->outside};
+    return true;
+  }
+  bool occluded(const Ray& ray) const override { return surfaces_.occluded(ray); }
+
+ private:
+  const Surfaces& surfaces_;
+};
+
+}  // namespace
+
+std::unique_ptr<RayEngine> engine_of(const Surfaces& surfaces) { return std::make_unique<SurfacesEngine>(surfaces); }
+
+RayCounts& RayCounts::operator+=(const RayCounts& b) {
+  rays += b.rays;
+  hits += b.hits;
+  shadow_rays += b.shadow_rays;
+  evaluations += b.evaluations;
+  uncertified += b.uncertified;
+  light += b.light;
+  return *this;
+}
+
+}  // namespace marrow

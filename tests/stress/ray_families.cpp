@@ -1,0 +1,136 @@
+// Rays that are likely to find mistakes.
+#include "tests/stress/ray_families.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace marrow::test {
+namespace {
+
+Ray toward(const Vec3d& from, const Vec3d& to) { return {from, normalize(to - from)}; }
+
+Vec3d eye(Random& random, const StressScene& s) {
+  return s.center() + random_direction(random) * (s.size() * random.between(3, 4.5));
+}
+Vec3d place(Random& random, const StressScene& s) { return s.center() + random.vector(s.size()); }
+
+Ray chord(Random& random, const StressScene& s) { return toward(eye(random, s), place(random, s)); }
+
+UnitVec3 axis(Random& random) {
+  Vec3d direction{};
+  direction[static_cast<std::size_t>(random.whole(0, 2))] = random.between(0, 1) < 0.5 ? -1 : 1;
+  return UnitVec3::unchecked(direction);
+}
+
+Ray through(const Vec3d& place, const UnitVec3& direction, const StressScene& s) {
+  return {place - direction * (4 * s.size()), direction};
+}
+
+// An end of a segment, or a point.
+Vec3d joint_of(Random& random, const BlendField& blend) {
+  const auto i = static_cast<std::size_t>(random.whole(0, static_cast<int>(blend.size()) - 1));
+  if (i < blend.points.size()) return blend.points.skeletons[i].at;
+  const SegmentSkeleton& s = blend.segments.skeletons[i - blend.points.size()];
+  return random.between(0, 1) < 0.5 ? s.from : s.to;
+}
+
+// Past a skeleton at about its radius.
+Ray tangent(Random& random, const StressScene& scene) {
+  const BlendField& blend = scene.blend();
+  const auto i = static_cast<std::size_t>(random.whole(0, static_cast<int>(blend.size()) - 1));
+  SegmentSkeleton s;
+  if (i < blend.points.size()) {
+    const PointSkeleton& p = blend.points.skeletons[i];
+    s = {p.at, p.at, p.radius, p.radius};
+  } else {
+    s = blend.segments.skeletons[i - blend.points.size()];
+  }
+  const double at = random.between(0, 1), radius = s.radius_from + (s.radius_to - s.radius_from) * at;
+  const UnitVec3 direction = UnitVec3::unchecked(random_direction(random));
+  const UnitVec3 aside = normalize(cross(direction.vec(), random_direction(random)));
+  return through(lerp(s.from, s.to, at) + aside * (radius * random.between(0.8, 1.2)), direction, scene);
+}
+
+// Through a point of a face, an edge or a corner of a cell, along an axis or across. Cells lie at dyadic fractions of
+// the boxes that can be asked for.
+Ray cell_boundary(Random& random, const StressScene& s) {
+  const Box3 box = s.random_cell(random);
+  Vec3d target;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double kind = random.between(0, 1);
+    const double at = kind < 0.8 ? random.whole(0, 16) / 16.0 : random.between(0, 1);
+    target[i] = box.lower[i] + box.size()[i] * at;
+  }
+  if (random.between(0, 1) < 0.6) return through(target, axis(random), s);
+  // In the plane of a face
+  Vec3d direction = random_direction(random);
+  if (random.between(0, 1) < 0.5) direction[static_cast<std::size_t>(random.whole(0, 2))] = 0;
+  return through(target, normalize(direction), s);
+}
+
+Ray focus(Random& random, const StressScene& s) {
+  const Vec3d target = s.focus() + random.vector(s.focus_size());
+  return random.between(0, 1) < 0.3 ? through(target, axis(random), s) : toward(eye(random, s), target);
+}
+
+Ray far(Random& random, const StressScene& s) {
+  Ray ray = random.between(0, 1) < 0.5 ? chord(random, s) : tangent(random, s);
+  ray.origin = ray.origin - ray.direction * (1e5 * s.size());
+  return ray;
+}
+
+// Between a ray that hits and one that does not, bisected to the end or part of the way.
+Ray silhouette(Random& random, const StressScene& s) {
+  const Vec3d from = eye(random, s);
+  Vec3d hit = s.focus() + random.vector(s.focus_size()), miss = s.center() + random.vector(2 * s.size());
+  const auto meets = [&](const Vec3d& target) { return s.surfaces().first_hit(toward(from, target)).has_value(); };
+  if (!meets(hit) || meets(miss)) return chord(random, s);
+  const int steps = random.whole(8, 32);
+  Vec3d middle = hit;
+  for (int i = 0; i < steps; ++i) {
+    middle = (hit + miss) * 0.5;
+    (meets(middle) ? hit : miss) = middle;
+  }
+  return toward(from, random.between(0, 1) < 0.5 ? hit : miss);
+}
+
+// Away from a hit, every second one close to the tangent plane.
+Ray spawned(Random& random, const StressScene& s) {
+  const auto hit = s.surfaces().first_hit(random.between(0, 1) < 0.5 ? chord(random, s) : focus(random, s));
+  if (!hit) return chord(random, s);
+  Vec3d direction = random_direction(random);
+  if (dot(direction, hit->normal) < 0) direction = -direction;
+  if (random.between(0, 1) < 0.5)
+    direction = direction - hit->normal * (dot(direction, hit->normal) * random.between(0.9, 0.9999));
+  return {hit->outside, normalize(direction)};
+}
+
+}  // namespace
+
+Ray ray_of(Family family, Random& random, const StressScene& scene) {
+  switch (family) {
+    case Family::Chord:
+      return chord(random, scene);
+    case Family::Axis:
+      return through(
+          random.between(0, 1) < 0.5 ? place(random, scene) : scene.focus() + random.vector(scene.focus_size()),
+          axis(random), scene);
+    case Family::Joint:
+      return toward(eye(random, scene), joint_of(random, scene.blend()));
+    case Family::Tangent:
+      return tangent(random, scene);
+    case Family::CellBoundary:
+      return cell_boundary(random, scene);
+    case Family::Focus:
+      return focus(random, scene);
+    case Family::Far:
+      return far(random, scene);
+    case Family::Silhouette:
+      return silhouette(random, scene);
+    case Family::Spawned:
+      return spawned(random, scene);
+  }
+  return chord(random, scene);
+}
+
+}  // namespace marrow::test

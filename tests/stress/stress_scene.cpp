@@ -1,0 +1,142 @@
+// Scenes that are hard to trace.
+#include "tests/stress/stress_scene.h"
+
+#include <array>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "field/math/elementary.h"
+#include "renderer/geometry/field_solid.h"
+#include "tests/trace/far_space.h"
+
+namespace marrow::test {
+namespace {
+
+// What a kind of scene draws.
+struct Draft {
+  BlendField blend{};
+  Vec3d focus{};
+  double focus_size = 1.2;
+};
+
+Setting random_setting(Random& random) {
+  Setting s;
+  s.degree = random.whole(3, 6);
+  s.cavity = random.between(0, 1) < 0.8;
+  const auto angles = traced_angles(s.degree, s.cavity);
+  s.alpha = s.cavity ? angles[static_cast<std::size_t>(random.whole(0, 3))] : angles[random.whole(1, 2) == 1 ? 1 : 2];
+  if (random.between(0, 1) < 0.2) s.alpha = random.between(0.2, 1.5);
+  return s;
+}
+
+Draft skeletons(Random& random) { return {random_scene(random, random_setting(random), random.whole(2, 6))}; }
+
+BlendField blend_of(const Setting& s) {
+  BlendField blend;
+  blend.degree = s.degree;
+  blend.alpha = s.alpha;
+  blend.cavity = s.cavity;
+  return blend;
+}
+
+// A thread of a ten-thousandth of the scene's size beside a thick limb, or growing out of it.
+Draft thin_feature(Random& random) {
+  Draft d{blend_of(random_setting(random))};
+  d.blend.segments.add({{-1.5, 0, 0}, {1.5, 0.2, 0}, 0.3, 0.25}, {});
+  const Vec3d at{random.between(-1, 1), random.between(0.32, 0.7), random.between(-0.2, 0.2)};
+  const Vec3d along = random_direction(random) * 0.04;
+  d.blend.segments.add({at, at + along, 3e-4, 3e-4}, {});
+  d.focus = at + along * 0.5;
+  d.focus_size = 2e-3;
+  return d;
+}
+
+// Two limbs side by side whose surfaces are a hair's breadth apart or into each other, on both sides of the angle at
+// which they join.
+Draft nearly_touching(Random& random) {
+  const int degree = random.whole(3, 6);
+  const double side = random.between(0, 1) < 0.5 ? -1 : 1, gap = side * pow(10, random.between(-6, -1.5));
+  const double turn = (random.between(0, 1) < 0.5 ? -1 : 1) * pow(10, random.between(-5, -2));
+  Draft d{blend_of({degree, contact_alpha(degree) + turn})};
+  const double r = 0.4, apart = r * (2 + gap), tilt = random.between(0, 1) < 0.5 ? 0 : random.between(0, 0.3);
+  d.blend.segments.add({{-1.3, 0, -apart / 2}, {1.3, 0, -apart / 2}, r, r}, {});
+  d.blend.segments.add({{-1.3, -tilt, apart / 2}, {1.3, tilt, apart / 2}, r, r}, {});
+  d.focus_size = 0.15;
+  return d;
+}
+
+// Two points two radii apart: just below the angle of contact their middle is outside, with a ring inside around it
+// (field-maths.md: alpha in (0.92398, 0.93026) for n = 3, (1.16237, 1.16545) for n = 4).
+Draft ring(Random& random) {
+  const bool cubic = random.between(0, 1) < 0.5;
+  Draft d{blend_of({cubic ? 3 : 4, cubic ? random.between(0.92398, 0.93026) : random.between(1.16237, 1.16545)})};
+  d.blend.points.add({{-0.7, 0, 0}, 0.7}, {});
+  d.blend.points.add({{0.7, 0, 0}, 0.7}, {});
+  d.focus_size = 0.3;
+  return d;
+}
+
+// A closed loop of segments around a hole that nearly closes.
+Draft loop(Random& random) {
+  const int degree = random.whole(3, 5), pieces = 12;
+  Draft d{blend_of({degree, contact_alpha(degree) + random.between(-0.2, 0.2)})};
+  const double major = random.between(0.5, 0.62), minor = random.between(0.42, 0.5);
+  const auto at = [&](int i) {
+    const double a = 2 * std::numbers::pi * i / pieces;
+    return Vec3d{major * cos(a), major * sin(a), 0};
+  };
+  for (int i = 0; i < pieces; ++i) d.blend.segments.add({at(i), at(i + 1), minor, minor}, {});
+  d.focus_size = 0.25;
+  return d;
+}
+
+using Draw = Draft (*)(Random&);
+constexpr std::array<Draw, kind_names.size()> draws{skeletons, thin_feature, nearly_touching, ring, loop};
+
+void scale(BlendField& blend, double by, const Vec3d& move) {
+  for (auto& s : blend.points.skeletons) s = {s.at * by + move, s.radius * by};
+  for (auto& s : blend.segments.skeletons)
+    s = {s.from * by + move, s.to * by + move, s.radius_from * by, s.radius_to * by};
+}
+
+}  // namespace
+
+// Half of the scenes keep their size; the others are from 1e-4 to 1e4 of it, and some stand far from the origin.
+StressScene::StressScene(std::uint64_t number) {
+  Random random(number, Random::Silent{});
+  kind_ = number % draws.size();
+  Draft draft = draws[kind_](random);
+  const double factor = random.between(0, 1) < 0.5 ? 1 : pow(10, random.between(-4, 4));
+  const Vec3d move = random.between(0, 1) < 0.8 ? Vec3d{} : random.vector(30 * factor);
+  scale(draft.blend, factor, move);
+  blend_ = std::move(draft.blend);
+  size_ *= factor;
+  center_ = move;
+  focus_ = draft.focus * factor + move;
+  focus_size_ = draft.focus_size * factor;
+  name_ = std::to_string(number) + " (" + kind_names[kind_] + ", " +
+          name_of({blend_.degree, blend_.alpha, blend_.cavity}) + ", scale " + std::to_string(factor) + ")";
+  build();
+}
+
+void StressScene::build() {
+  expect_far_space_is_dropped(blend_);
+  auto solid = FieldSolid::make({blend_, {}, {}}, MaterialId{}, {});
+  if (!solid) throw std::runtime_error("scene " + name_ + " cannot be traced");
+  std::vector<PlacedSolid> solids;
+  solids.push_back({std::move(*solid), ObjectId{0}});
+  auto made = EmbreeSurfaces::make(std::move(solids), {}, "threads=1");
+  if (!made) throw std::runtime_error("scene " + name_ + " has no surfaces");
+  surfaces_ = std::move(*made);
+  oracle_ = std::make_unique<Oracle>(blend_);
+  const Solid& all = *surfaces_->solids()[0].solid;
+  for (std::size_t i = 0; i < all.element_count(); ++i) cells_.include(all.element_box(i));
+}
+
+Box3 StressScene::random_cell(Random& random) const {
+  const Solid& all = *surfaces_->solids()[0].solid;
+  return all.element_box(static_cast<std::size_t>(random.whole(0, static_cast<int>(all.element_count()) - 1)));
+}
+
+}  // namespace marrow::test

@@ -1,0 +1,49 @@
+// Scenes that are hard to trace, made from a number.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "renderer/geometry/embree_surfaces.h"
+#include "tests/trace/oracle.h"
+#include "tests/trace/random_scene.h"
+
+namespace marrow::test {
+
+inline constexpr std::array kind_names{"skeletons", "thin feature", "nearly touching", "ring", "loop"};
+
+/// One blend, the surfaces that are tested, and the oracle that judges them.
+class StressScene {
+ public:
+  /// The kind is `number` modulo the number of kinds; everything else is drawn from a generator with this seed.
+  explicit StressScene(std::uint64_t number);
+
+  const std::string& name() const { return name_; }
+  std::size_t kind() const { return kind_; }  ///< index of kind_names
+  const BlendField& blend() const { return blend_; }
+  const EmbreeSurfaces& surfaces() const { return *surfaces_; }
+  const Oracle& oracle() const { return *oracle_; }
+  double size() const { return size_; }  ///< half of the scene's extent, about
+  const Vec3d& center() const { return center_; }
+  const Vec3d& focus() const { return focus_; }  ///< where it is hardest
+  double focus_size() const { return focus_size_; }
+  /// Of the whole division of space: no surface is outside.
+  const Box3& cells() const { return cells_; }
+  Box3 random_cell(Random&) const;
+
+ private:
+  void build();
+
+  std::size_t kind_ = 0;
+  std::string name_;
+  BlendField blend_;
+  double size_ = 1.6, focus_size_ = 0.5;
+  Vec3d center_{}, focus_{};
+  std::unique_ptr<EmbreeSurfaces> surfaces_;
+  std::unique_ptr<Oracle> oracle_;
+  Box3 cells_;
+};
+
+}  // namespace marrow::test

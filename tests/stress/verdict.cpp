@@ -1,0 +1,177 @@
+// What rays found, held against the exact field.
+#include "tests/stress/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace marrow::test {
+namespace {
+
+constexpr std::size_t most_offenders = 4;
+
+std::string text(const StressScene& scene, const Ray& ray, const char* family, const char* what, double amount) {
+  char line[640];
+  std::snprintf(line, sizeof line, "%s by %.3g: scene %s, %s ray from {%a, %a, %a} along {%a, %a, %a}", what, amount,
+                scene.name().c_str(), family, ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x(),
+                ray.direction.y(), ray.direction.z());
+  return line;
+}
+
+void note(std::vector<std::string>& offenders, std::string line) {
+  if (offenders.size() < most_offenders) offenders.push_back(std::move(line));
+}
+
+void merge(std::vector<std::string>& into, const std::vector<std::string>& more) {
+  for (const std::string& line : more) note(into, line);
+}
+
+// The part of a ray near the cells: there is nothing elsewhere, as tests of the cells hold.
+Ray near_cells(const StressScene& scene, Ray ray) {
+  const double size = length(scene.cells().size()), middle = dot(scene.cells().center() - ray.origin, ray.direction);
+  ray.t_min = std::max(0.0, middle - size);
+  ray.t_max = middle + size;
+  return ray;
+}
+
+// The hit itself: on the exact surface, in its place on the ray, with a start for further rays that is outside.
+void judge_hit(const StressScene& scene, const Ray& ray, const SurfaceHit& hit, const char* family, bool from_afar,
+               Verdict& v) {
+  const Vec3d p = ray.at(hit.t);
+  const BlendSample exact = evaluate(scene.blend(), p);
+  const double slope = length(exact.corrected_gradient), distance = scene.oracle().skeleton_distance(p);
+  const double displacement = std::fabs(exact.corrected - 1) / (slope * distance);
+  if (displacement < allowed_displacement) {
+    v.largest_displacement = std::max(v.largest_displacement, displacement);
+  } else if (std::fabs(exact.corrected - 1) < grazing_excess) {
+    ++v.displaced;
+  } else {
+    ++v.phantom;
+    note(v.phantom_rays, text(scene, ray, family, "phantom hit off", displacement));
+  }
+  if (const double excess = scene.oracle().value(hit.outside) - 1; !(excess < 0)) {
+    ++v.wrong_side;
+    note(v.wrong_side_rays, text(scene, ray, family, "further rays start inside", excess));
+  }
+  const double along = dot(exact.corrected_gradient, ray.direction);
+  if (!from_afar || !(along > 0.1 * slope)) return;
+  ++v.measured;
+  const auto t = static_cast<float>(hit.t);
+  const double ulp = static_cast<double>(std::nextafter(t, std::numeric_limits<float>::infinity()) - t);
+  const double ulps = std::fabs(1 - exact.corrected) / along / ulp;
+  v.within_4_ulp += ulps <= 4;
+  v.largest_ulps = std::max(v.largest_ulps, ulps);
+}
+
+// Nothing worth mentioning may be inside before `end`.
+void judge_free_way(const StressScene& scene, const Ray& ray, double end, bool certified, const char* family,
+                    Verdict& v) {
+  Ray before = near_cells(scene, ray);
+  before.t_max = std::min(before.t_max, end);
+  if (!(before.t_min < before.t_max)) return;
+  const auto root = scene.oracle().first_root(before);
+  if (!root) return;
+  const double radius = scene.oracle().skeleton_distance(ray.at(*root));
+  if (end - *root < 1e-4 * radius) return;  // the hit itself
+  const double excess = scene.oracle().largest_excess(ray, *root, std::min(end, *root + 4 * radius));
+  if (excess < grazing_excess) {
+    ++v.grazing;
+    return;
+  }
+  ++(certified ? v.missed : v.lost);
+  note(certified ? v.missed_rays : v.lost_rays, text(scene, ray, family, certified ? "missed" : "lost", excess));
+}
+
+// How deep the surface is that a ray found at t: of a line that only one way met, whether it is more than a touch.
+double depth_after(const StressScene& scene, const Ray& ray, double t) {
+  const double radius = scene.oracle().skeleton_distance(ray.at(t));
+  return scene.oracle().largest_excess(ray, std::max(0.0, t - 1e-3 * radius), t + radius);
+}
+
+Ray reversed(const Ray& ray, double length) { return {ray.at(length), -ray.direction, 0, length}; }
+
+}  // namespace
+
+void Verdict::add(const Verdict& b) {
+  rays += b.rays;
+  hits += b.hits;
+  missed += b.missed;
+  lost += b.lost;
+  phantom += b.phantom;
+  displaced += b.displaced;
+  grazing += b.grazing;
+  uncertified += b.uncertified;
+  wrong_side += b.wrong_side;
+  measured += b.measured;
+  within_4_ulp += b.within_4_ulp;
+  evaluations += b.evaluations;
+  largest_displacement = std::max(largest_displacement, b.largest_displacement);
+  largest_ulps = std::max(largest_ulps, b.largest_ulps);
+  merge(missed_rays, b.missed_rays);
+  merge(lost_rays, b.lost_rays);
+  merge(phantom_rays, b.phantom_rays);
+  merge(wrong_side_rays, b.wrong_side_rays);
+}
+
+void judge(const StressScene& scene, const Ray& ray, const char* family, bool from_afar, Verdict& v) {
+  RayRecord record;
+  const auto hit = scene.surfaces().first_hit(ray, record);
+  ++v.rays;
+  v.evaluations += record.evaluations;
+  v.uncertified += !record.certified;
+  if (hit) {
+    ++v.hits;
+    judge_hit(scene, ray, *hit, family, from_afar, v);
+  }
+  // Just before the hit the steps would creep up to it; what is nearer to it than this is part of the hit.
+  const double end =
+      hit ? hit->t - 1e-4 * scene.oracle().skeleton_distance(ray.at(hit->t)) : std::numeric_limits<double>::infinity();
+  judge_free_way(scene, ray, end, record.certified, family, v);
+}
+
+void Parity::add(const Parity& b) {
+  lines += b.lines;
+  crossed += b.crossed;
+  restarts += b.restarts;
+  odd += b.odd;
+  odd_lost += b.odd_lost;
+  odd_grazing += b.odd_grazing;
+  merge(odd_rays, b.odd_rays);
+  merge(lost_rays, b.lost_rays);
+}
+
+void count_crossings(const StressScene& scene, const Ray& line, Random& random, const char* family, Parity& p) {
+  const double reach = near_cells(scene, line).t_max;
+  const Ray there{line.origin, line.direction, 0, reach}, back = reversed(line, reach);
+  if (scene.oracle().value(there.origin) >= 1 || scene.oracle().value(back.origin) >= 1) return;
+  RayRecord going, coming;
+  const auto entry = scene.surfaces().first_hit(there, going), exit = scene.surfaces().first_hit(back, coming);
+  ++p.lines;
+  // `ray` met surface at t; the record is that of the ray that met nothing the other way.
+  const auto one_way_only = [&](const Ray& ray, double t, const RayRecord& empty_handed) {
+    const double depth = depth_after(scene, ray, t);
+    if (depth < grazing_excess) {
+      ++p.odd_grazing;
+      return;
+    }
+    ++(empty_handed.certified ? p.odd : p.odd_lost);
+    note(empty_handed.certified ? p.odd_rays : p.lost_rays,
+         text(scene, ray, family, "met only one way, inside", depth));
+  };
+  if (!entry && !exit) return;
+  ++p.crossed;
+  if (!exit) return one_way_only(there, entry->t, coming);
+  if (!entry) return one_way_only(back, exit->t, going);
+  const double first = entry->t, last = reach - exit->t;
+  for (int i = 0; i < 3; ++i) {
+    const double t = random.between(first, last);
+    if (!(scene.oracle().value(line.at(t)) < 1 - grazing_excess)) continue;
+    ++p.restarts;
+    const Ray onward{line.at(t), line.direction, 0, reach - t}, backward{line.at(t), -line.direction, 0, t};
+    if (!scene.surfaces().first_hit(onward, going)) one_way_only(back, exit->t, going);
+    if (!scene.surfaces().first_hit(backward, coming)) one_way_only(there, entry->t, coming);
+  }
+}
+
+}  // namespace marrow::test
