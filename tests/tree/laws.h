@@ -128,6 +128,11 @@ Difference central_difference(const Function& f, const Vec3d& p, std::size_t axi
   return {narrow, std::fabs(wide - narrow)};
 }
 
+/// How far a value moves when a point in a scene of some units is rounded.
+inline double steepness(const Gradient& f) {
+  return std::fabs(f.slope[0]) + std::fabs(f.slope[1]) + std::fabs(f.slope[2]);
+}
+
 /// The gradient is that of differences. Where the slopes within a step differ much there is a kink, or the enclosures
 /// are useless: `rough` counts these.
 template <class Field>
@@ -135,7 +140,7 @@ void expect_gradient(const Field& field, const Vec3d& p, Checks& checks) {
   constexpr double step = 1e-5, kink = 1e-2;
   const Gradient jet = field.value(jet_variables(p));
   const double value = field.value(p);
-  ASSERT_NEAR(jet.value, value, 1e-14 * (1 + std::fabs(value)));
+  ASSERT_NEAR(jet.value, value, 1e-14 * (1 + std::fabs(value) + steepness(jet)));
   const SlopeBounds around = field.value(jet_variables(spanned(Box3{p, p}.padded(step))));
   for (std::size_t i = 0; i < 3; ++i) {
     ++checks.slopes;
@@ -159,7 +164,7 @@ void expect_hessian(const Field& field, const Vec3d& p, Checks& checks) {
   const HessianJet jet = field.value(
       Vec3<HessianJet>{HessianJet::variable(p.x, 0), HessianJet::variable(p.y, 1), HessianJet::variable(p.z, 2)});
   const Gradient gradient = field.value(jet_variables(p));
-  ASSERT_NEAR(jet.value, gradient.value, 1e-13 * (1 + std::fabs(jet.value)));
+  ASSERT_NEAR(jet.value, gradient.value, 1e-13 * (1 + std::fabs(jet.value) + steepness(gradient)));
   const auto shifted = [&](std::size_t axis, double h) {
     Vec3d q = p;
     q[axis] += h;
