@@ -64,6 +64,28 @@ TEST(SharpCsg, Laws) {
   for (const std::size_t children : {1u, 2u, 5u}) test::expect_child_level(SharpUnion{}, children, 88);
 }
 
+// The tracer needs slopes whose sign is sure wherever the surface is not near the crease.
+TEST(SharpCsg, SlopesOnTheSurfaceAreThoseOfOneSide) {
+  using test::Enclosure;
+  const Interval at_surface{1 - 1e-3, 1 + 1e-3};
+  for (const Interval& other : {Interval(0, 0.5), Interval(0.9, 0.99)}) {
+    const Enclosure f[]{Enclosure::variable(at_surface, 0), Enclosure::variable(other, 1)};
+    const Enclosure c = SharpUnion{}.value(std::span<const Enclosure>(f));
+    EXPECT_NEAR(c.slope[0].lo, 1, 1e-12);
+    EXPECT_NEAR(c.slope[0].hi, 1, 1e-12);
+    EXPECT_NEAR(c.slope[1].lo, 0, 1e-12);
+    EXPECT_NEAR(c.slope[1].hi, 0, 1e-12);
+  }
+  for (const Interval& other : {Interval(1.01, 1.02), Interval(1.3, 2)}) {
+    const Enclosure f[]{Enclosure::variable(other, 0), Enclosure::variable(at_surface, 1)};
+    const Enclosure c = SharpIntersection{}.value(std::span<const Enclosure>(f));
+    EXPECT_NEAR(c.slope[0].lo, 0, 1e-12);
+    EXPECT_NEAR(c.slope[0].hi, 0, 1e-12);
+    EXPECT_NEAR(c.slope[1].lo, 1, 1e-12);
+    EXPECT_NEAR(c.slope[1].hi, 1, 1e-12);
+  }
+}
+
 TEST(SharpCsg, NothingAddsNothing) {
   EXPECT_EQ(field_of(SharpUnion{}, {0.7, 0, 0}), 0.7);
   EXPECT_EQ(field_of(SharpUnion{}, {0, 1.7}), 1.7);

@@ -18,4 +18,16 @@ Box3 Bend::support(const Box3& child) const {
   return CylinderHull{extent->bottom, extent->top, reach}.box(center, side);
 }
 
+// Extreme at corners of a box without the origin.
+Interval Bend::angle_over(const Interval& y, const Interval& x) {
+  const double most = std::numbers::pi * (1 + 1e-15);
+  if (is_cut(y, x)) return {-most, most};
+  const auto corner = [](double v, double u) {
+    const Interval Y = v, X = u, r = sqrt(square(X) + square(Y));
+    return Interval(2) * (u < 0 ? atan((r - X) / Y) : atan(Y / (r + X)));
+  };
+  const Interval all = hull(hull(corner(y.lo, x.lo), corner(y.lo, x.hi)), hull(corner(y.hi, x.lo), corner(y.hi, x.hi)));
+  return clamped(all, {-most, most});
+}
+
 }  // namespace marrow

@@ -31,17 +31,22 @@ struct Bend {
   }
   Box3 support(const Box3& child) const;
 
-  /// With the arc's centre as origin, the point is at the angle `at`; `bent` is the nearest angle of the arc. Turning
-  /// it back by `bent` leaves it where the straight piece was, but for the length of the arc up to there.
+  /// With the arc's centre as origin, the point is at the angle `at`. Before and behind the arc, the angle of the arc's
+  /// end turns it back to where the straight piece was; in front of the arc that is R at along the axis and R - r over
+  /// it, which the same formula gives, but not as tight bounds.
   template <Number X>
   Vec3<X> child_point(const Vec3<X>& p) const {
     if (!(radius() < flat * length)) return p;
     const Vec3<X> y = constant<X>(axis), z = constant<X>(normalize(across())), v = p - constant<X>(center);
-    const X along = dot(v, y), below = X(radius()) - dot(v, z);
-    const X bent = clamp(angle_of(along, below), -angle / 2, angle / 2);
-    const X c = cos(bent), s = sin(bent);
-    const X straight = X(radius()) * bent + (along * c - below * s), height = X(radius()) - (along * s + below * c);
-    return p + y * (straight - along) + z * (height - dot(v, z));
+    const X along = dot(v, y), height = dot(v, z), below = X(radius()) - height;
+    const X at = angle_of(along, below), r = sqrt(square(along) + square(below));
+    const X straight = in_three(
+        at, [&](double end) { return X(radius() * end) + (along * X(cos(end)) - below * X(sin(end))); },
+        [&](const X& between) { return X(radius()) * between; });
+    const X over = in_three(
+        at, [&](double end) { return X(radius()) - (along * X(sin(end)) + below * X(cos(end))); },
+        [&](const X&) { return X(radius()) - r; });
+    return p + y * (straight - along) + z * (over - height);
   }
 
  private:
@@ -50,16 +55,36 @@ struct Bend {
 
   Vec3d across() const { return toward.vec() - axis * dot(axis, toward); }
   double radius() const { return angle > 0 ? length / angle : Box3::inf; }
+  template <Number X, class AtEnd, class Between>
+  X in_three(const X& at, AtEnd at_end, Between between) const {
+    const double half = angle / 2;
+    return piecewise(
+        at, -half, [&](const X&) { return at_end(-half); },
+        [&](const X& rest) { return piecewise(rest, half, between, [&](const X&) { return at_end(half); }); });
+  }
   /// atan2(y, x), from -pi to pi: twice the angle at the circle's far side.
   template <Number X>
   static X angle_of(const X& y, const X& x) {
-    if constexpr (!is_enclosure<X>)
+    if constexpr (is_enclosure<X>) {
+      return angle_over(y, x);
+    } else {
       if (value_of(y) == 0 && !(value_of(x) > 0)) return X(std::numbers::pi);
-    const X r = sqrt(square(x) + square(y));
-    return piecewise(
-        x, 0, [&](const X& behind) { return X(2.0) * atan((r - behind) / y); },
-        [&](const X& before) { return X(2.0) * atan(y / (r + before)); });
+      const X r = sqrt(square(x) + square(y));
+      return value_of(x) < 0 ? X(2.0) * atan((r - x) / y) : X(2.0) * atan(y / (r + x));
+    }
   }
+  static Interval angle_over(const Interval& y, const Interval& x);
+  template <std::size_t N>
+  static Jet<Interval, N> angle_over(const Jet<Interval, N>& y, const Jet<Interval, N>& x) {
+    Jet<Interval, N> at(angle_over(y.value, x.value));
+    const Interval r2 = square(x.value) + square(y.value);
+    for (std::size_t i = 0; i < N; ++i)
+      at.slope[i] =
+          is_cut(y.value, x.value) ? Interval::everything() : (x.value / r2) * y.slope[i] - (y.value / r2) * x.slope[i];
+    return at;
+  }
+  /// Whether the angle jumps within a box.
+  static bool is_cut(const Interval& y, const Interval& x) { return y.contains(0) && x.lo <= 0; }
 };
 
 }  // namespace marrow

@@ -5,8 +5,8 @@ namespace marrow {
 // Halving between the crisp and the soft operation, which enclose this one. Iso-curves do not cross, so that the side
 // of the iso-curve at c that the point is on tells the side of the solution that c is on.
 double SharpCorner::solve(double x, double y) const {
-  if (is_union() ? y <= x - (1 - b) * width(x) : y >= x - (1 - b) * width(x)) return x;
-  if (is_union() ? x <= y - (1 - a) * width(y) : x >= y - (1 - a) * width(y)) return y;
+  if (is_line(x, y, b)) return x;
+  if (is_line(y, x, a)) return y;
   const double crisp = is_union() ? max(x, y) : min(x, y), soft = above().value(x, y);
   double beyond = crisp, within = is_union() ? min(soft, 1.0) : soft;  // where U^2 + V^2 > 1, and where not
   for (int i = 0; i < 200; ++i) {
@@ -20,9 +20,10 @@ double SharpCorner::solve(double x, double y) const {
 
 // Widened until the equation itself says so on both sides; never beyond the crisp operation on one.
 Interval SharpCorner::enclosed_at(double x, double y) const {
+  if (is_line(x, y, b)) return x;
+  if (is_line(y, x, a)) return y;
   if (!inside(x, y)) return Interval(1) + above().value(Interval(x) - Interval(1), Interval(y) - Interval(1));
   const double c = solve(x, y), crisp = is_union() ? max(x, y) : min(x, y);
-  if (c == 0) return 0;
   const auto excess = [&](double at) {
     const auto p = on_arc(Interval(x), Interval(y), Interval(at));
     return square(p.U) + square(p.V) - Interval(1);
@@ -45,6 +46,8 @@ Interval SharpCorner::enclosed_at(double x, double y) const {
 
 // Below the surface from the equation, which also holds where one of U, V is 0 and the other 1.
 EllipseCorner::Partials SharpCorner::partials(const Interval& x, const Interval& y, const Interval& c) const {
+  if (is_line(x, y, b)) return {1, 0};
+  if (is_line(y, x, a)) return {0, 1};
   const bool may_be_below = inside(x.lo, y.lo), may_be_above = !inside(x.hi, y.hi);
   EllipseCorner::Partials under{{0, 1}, {0, 1}}, over{{0, 1}, {0, 1}};
   if (may_be_below) {

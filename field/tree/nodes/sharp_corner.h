@@ -19,7 +19,14 @@ struct SharpCorner {
 
  private:
   bool is_union() const { return a < 1; }
-  static double width(double c) { return c * max(1 - c, 0.0); }
+  /// Where the arc of the iso-curve at c begins on its straight line, as the other field; rises with c.
+  static double border(double c, double control) {
+    return c <= 1 ? c - (1 - control) * (c * (1 - c)) : 1 + control * (c - 1);
+  }
+  /// Whether the value is f all over a box.
+  bool is_line(const Interval& f, const Interval& other, double control) const {
+    return is_union() ? other.hi <= border(f.lo, control) : other.lo >= border(f.hi, control);
+  }
   bool inside(double x, double y) const { return is_union() ? !(x > 1 || y > 1) : !(x > 1 && y > 1); }
   EllipseCorner above() const { return {a, b}; }
 
