@@ -24,7 +24,8 @@ struct Neighbourhood {
 /// of Zanni et al. 2015, sec. 6. The rule:
 ///   alpha(p) = contact + unequal(spread) + dense(crowd), at least alpha of the ring (or 0 where it is not defined).
 ///   unequal  makes two balls of any ratio of radii join when they touch: within 2e-4 of the sum of the
-///            radii for ratios up to 5, within 2e-3 up to 20 (contact alone: 0.02 and 0.04 late). 0 for equal radii.
+///            radii for ratios up to 5, within 2e-3 up to 20 (contact alone: 0.02 and 0.04 late); Cauchy and
+///            compact kernels within 2e-3 up to 2.5. 0 for equal radii.
 ///   crowd    = f / k(e), e the scaled distance of the nearest skeleton as the near field has it: for k equal
 ///            skeletons around p it is k; for one infinite skeleton 1, however it is cut. dense() is 0 up to 2 and
 ///            falls as the square beyond, such that in the middle of a ring of thickness r and radius r, a torus that

@@ -19,8 +19,8 @@ using FieldNodeId = Id<struct FieldNodeTag>;
 
 /// Whether a primitive is the integral of the kernel along its skeleton (SCALIS, Zanni et al. 2013)
 /// or the kernel of the smallest scaled distance (eq. 4 of Zanni et al. 2015, corrected to a maximum), or the older
-/// integral of 1/r^3 with the radius at the foot of the point (Cani and Hornus 2001; points and lines, inverse kernel of
-/// degree 3).
+/// integral of 1/r^3 with the radius at the foot of the point (Cani and Hornus 2001; points and lines, inverse kernel
+/// of degree 3).
 enum class SkeletonModel { Integral, Distance, CaniHornus };
 
 /// Radii are surface radii: an isolated infinite line of radius r has its surface at distance r.

@@ -283,6 +283,22 @@ TEST(LocalContact, JoinsUnequalBallsWhenTheyTouch) {
     }
 }
 
+TEST(LocalContact, AdaptsToRadiiUnderEveryKernel) {
+  for (const Kernel& kernel : {Kernel{KernelFamily::Cauchy, 4, 1.2}, Kernel{KernelFamily::Compact, 4, 1.5}}) {
+    BlendField blend;
+    blend.kernel = kernel.family;
+    blend.kernel_shape = kernel.shape;
+    blend.degree = kernel.degree;
+    blend.alpha = contact_alpha(kernel);
+    const double late = joining_distance(blend, 0.4);
+    blend.local_contact = std::make_shared<const LocalContact>(kernel, true, Projection::Paper, true, false);
+    const double joined = joining_distance(blend, 0.4);
+    std::cout << "  contact " << late << ", adapted " << joined << '\n';
+    EXPECT_LT(late, 0.998);
+    EXPECT_NEAR(joined, 1, 2e-3);
+  }
+}
+
 TEST(LocalContact, IsContactForEqualSkeletonsAndClosesTheTorusWhenItTouchesItself) {
   for (int n = 3; n <= 6; ++n) {
     BlendField blend;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -115,7 +116,12 @@ TEST(Profile, ItsBlendsTakeAnglesFromZeroOn) {
   EXPECT_FALSE(result_of(-0.1, SkeletonModel::Integral, cauchy));
   const auto wide = result_of(AlphaContact{}, SkeletonModel::Integral, Kernel{KernelFamily::Compact, 4, 2});
   ASSERT_TRUE(wide);
-  EXPECT_EQ(wide->warnings().size(), 1u);
+  ASSERT_EQ(wide->warnings().size(), 1u);
+  EXPECT_NE(wide->warnings()[0].message.find("before they touch"), std::string::npos);
+  const auto hollow = result_of(0.1, SkeletonModel::Integral, Kernel{KernelFamily::Compact, 4, 2});
+  ASSERT_TRUE(hollow);
+  ASSERT_EQ(hollow->warnings().size(), 1u);
+  EXPECT_NE(hollow->warnings()[0].message.find("hollow"), std::string::npos);
   EXPECT_TRUE(result_of(AlphaSum{}, SkeletonModel::Distance, cauchy));
   EXPECT_FALSE(result_of(AlphaSum{}, SkeletonModel::Integral, compact));
 }
