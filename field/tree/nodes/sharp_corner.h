@@ -56,15 +56,15 @@ struct SharpCorner {
   X below(const X& x, const X& y) const;
 };
 
-/// Two steps of Newton's method from the solution add its first and second derivatives.
+/// Steps of Newton's method from the solution add its first and second derivatives, and digits to longer numbers.
 template <Number X>
 X SharpCorner::below(const X& x, const X& y) const {
-  const double c = solve(value_of(x), value_of(y));
-  if (c == value_of(x)) return x;
-  if (c == value_of(y)) return y;
-  X r(c);
-  if constexpr (JetNumber<X>) {
-    for (int step = 0; step < 2; ++step) {
+  const double u = lower(x), v = lower(y);
+  if (is_line(u, v, b)) return x;
+  if (is_line(v, u, a)) return y;
+  X r(solve(u, v));
+  if constexpr (!std::same_as<X, double>) {
+    for (int step = 0; step < 3; ++step) {
       const OnArc<X> p = on_arc(x, y, r);
       r += (square(p.U) + square(p.V) - X(1.0)) * X(0.5) * r * (X(1.0) - r) / fall(p);
     }
@@ -75,7 +75,7 @@ X SharpCorner::below(const X& x, const X& y) const {
 template <Number X>
 X SharpCorner::value(const X& x, const X& y) const {
   if constexpr (!is_enclosure<X>) {
-    if (inside(value_of(x), value_of(y))) return below(x, y);
+    if (inside(lower(x), lower(y))) return below(x, y);
     return X(1.0) + above().value(x - X(1.0), y - X(1.0));
   } else if constexpr (!JetNumber<X>) {
     return {enclosed_at(std::max(0.0, x.lo), std::max(0.0, y.lo)).lo,
