@@ -56,15 +56,15 @@ struct SharpCorner {
   X below(const X& x, const X& y) const;
 };
 
-/// Two steps of Newton's method from the solution add its first and second derivatives, and digits to longer numbers.
+/// Steps of Newton's method from the solution add its first and second derivatives, and digits to longer numbers.
 template <Number X>
 X SharpCorner::below(const X& x, const X& y) const {
-  const double c = solve(lower(x), lower(y));
-  if (c == lower(x)) return x;
-  if (c == lower(y)) return y;
-  X r(c);
+  const double u = lower(x), v = lower(y);
+  if (is_line(u, v, b)) return x;
+  if (is_line(v, u, a)) return y;
+  X r(solve(u, v));
   if constexpr (!std::same_as<X, double>) {
-    for (int step = 0; step < 2; ++step) {
+    for (int step = 0; step < 3; ++step) {
       const OnArc<X> p = on_arc(x, y, r);
       r += (square(p.U) + square(p.V) - X(1.0)) * X(0.5) * r * (X(1.0) - r) / fall(p);
     }
