@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "field/kernel/inverse_family.h"
+#include "renderer/scene/alpha_forms.h"
 #include "renderer/scene/curve_forms.h"
 #include "renderer/scene/node_forms.h"
-#include "renderer/scene/alpha_forms.h"
 #include "renderer/scene/primitive_forms.h"
 #include "renderer/scene/skeleton_forms.h"
 

@@ -154,6 +154,9 @@ Form<Choice> form_of_choice() {
   return either<Choice>({one_of(alternatives_of<Choice>()), word});
 }
 
+// Objects have a `plane` too, and each table has a name of its own.
+std::string name_of_table(const NodeInfo& info) { return info.name == "plane" ? "plane_node" : std::string(info.name); }
+
 template <class Kind>
 const Table<Written<Kind>>& node_table() {
   static const Table<Written<Kind>> table = [] {
@@ -170,7 +173,7 @@ const Table<Written<Kind>>& node_table() {
       keys.push_back(
           key<Owner>("of", &Owner::of, list_of(field_node(), info.min_children, most), "the fields").required());
     }
-    return Table<Owner>(std::string(info.name), std::string(info.doc), std::move(keys),
+    return Table<Owner>(name_of_table(info), std::string(info.doc), std::move(keys),
                         [](const Owner& owner, const Value& v, Reader& reader) {
                           if constexpr (requires { owner.problem(owner.of.size()); }) {
                             const std::string wrong = owner.problem(owner.of.size());
