@@ -6,7 +6,6 @@
 
 #include "field/trace/block.h"
 #include "field/trace/cell_tree.h"
-#include "field/trace/mask_walk.h"
 #include "field/trace/precision.h"
 
 namespace marrow {
@@ -56,6 +55,7 @@ struct BlendTracer::State {
   std::vector<Piece> pieces;
   const BlockKernels& kernels;
   NearFar coarse, fine;
+  LatticeErrors lattice;
   CellTree tree;
   mutable BlockArena arena;
   mutable std::unique_ptr<std::atomic<const Block*>[]> blocks;
@@ -69,12 +69,13 @@ struct BlendTracer::State {
         kernels(k),
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
         fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
+        lattice(field.degree),
         tree(pieces, fine, iso, kernels, field.degree, cells_for(pieces.size())),
         blocks(new std::atomic<const Block*>[tree.cells().size()] {}) {}
   ~State() {
     for (std::size_t i = 0; i < tree.cells().size(); ++i) delete blocks[i].load();
   }
-  Block::Context context() const { return {pieces, tree, cutter, coarse, fine, iso, kernels, field.degree}; }
+  Block::Context context() const { return {pieces, tree, cutter, coarse, fine, lattice, iso, kernels, field.degree}; }
 };
 
 Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const TraceOptions& options) {
@@ -115,7 +116,6 @@ std::optional<CellHit> BlendTracer::first_hit(std::size_t cell, const Ray& ray, 
   if (any) exit = std::min(exit, ray.t_max);
   if (!(enter < exit)) return {};
   const Block& b = block(cell);
-  if (b.mask() == 0) return {};
   // Block coordinates, with t counted from the point of the ray nearest to the block's centre.
   const double t_near = dot(b.center() - ray.origin, ray.direction), scale = 1 / b.half();
   const Vec3d start = (ray.origin - b.center() + direction * t_near) * scale;
@@ -124,22 +124,17 @@ std::optional<CellHit> BlendTracer::first_hit(std::size_t cell, const Ray& ray, 
     local.origin[i] = static_cast<float>(start[i]);
     local.direction[i] = static_cast<float>(direction[i]);
   }
-  const double begin = (enter - t_near) * scale;
-  MaskWalk walk(b.mask(), start, direction, inverse, begin, (exit - t_near) * scale);
   const auto world_t = [&](float t) { return t_near + static_cast<double>(t) * b.half(); };
-  for (MaskWalk::Stretch s; walk.next(s);) {
-    const Root root = state_->kernels.first_root(b.view(), local,
-                                                 {.t0 = static_cast<float>(s.begin),
-                                                  .t1 = static_cast<float>(s.end),
-                                                  .any = any,
-                                                  .from_surface = s.begin <= begin && enter <= ray.t_min});
-    log.evaluations += static_cast<std::uint32_t>(root.evaluations);
-    log.undecided = std::min(log.undecided, world_t(root.undecided));
-    if (!root.hit) continue;
-    const double t = std::clamp(world_t(root.t), enter, exit);
-    return t <= ray.t_max ? std::optional(CellHit{t}) : std::nullopt;
-  }
-  return {};
+  const Root root = state_->kernels.first_root(b.view(), local,
+                                               {.t0 = static_cast<float>((enter - t_near) * scale),
+                                                .t1 = static_cast<float>((exit - t_near) * scale),
+                                                .any = any,
+                                                .from_surface = enter <= ray.t_min});
+  log.evaluations += static_cast<std::uint32_t>(root.evaluations);
+  log.undecided = std::min(log.undecided, world_t(root.undecided));
+  if (!root.hit) return {};
+  const double t = std::clamp(world_t(root.t), enter, exit);
+  return t <= ray.t_max ? std::optional(CellHit{t}) : std::nullopt;
 }
 
 SurfacePoint BlendTracer::surface_at(std::size_t cell, const Vec3d& position) const {

@@ -126,17 +126,18 @@ Block::Block(const Context& context, const CellTree::Cell& cell, BlockArena& are
   f_error_ = fine.far.f_error;
   gradient_error_ = fine.far.gradient_error;
 
-  const std::size_t coarse_floats = coarse.source_floats(), fine_floats = fine.source_floats();
-  float* const floats = arena.allocate(coarse_floats + fine_floats + 2 * far_floats);
-  float* const far = floats + coarse_floats + fine_floats;
-  view_ = {.coarse = write_level(coarse, floats, far),
-           .fine = write_level(fine, floats + coarse_floats, far + far_floats),
-           .degree = context.degree,
-           .iso = context.iso.view()};
-  // The coarse level is compared with the fine one, so both errors count.
-  view_.coarse.f_error = static_cast<float>(1.0001 * (coarse.far.f_error + f_error_));
-  view_.coarse.g_error = static_cast<float>(1.0001 * (coarse.far.gradient_error + gradient_error_));
-  mask_ = context.kernels.mask(view_);
+  const std::size_t fine_floats = fine.source_floats();
+  float* const floats = arena.allocate(fine_floats + (1 + patch_count) * far_floats);
+  float* const far = floats + fine_floats;
+  view_ = {.fine = write_level(fine, floats, far), .patches = {}, .degree = context.degree, .iso = context.iso.view()};
+
+  // The polynomials are compared with the fine level, so both errors count.
+  std::vector<SourceGroup> memory((coarse.source_floats() + far_floats) / floats_per_group + 1);
+  float* const sources = memory.front().x;
+  FieldLevel level = write_level(coarse, sources, sources + coarse.source_floats());
+  level.f_error = static_cast<float>(1.0001 * (coarse.far.f_error + f_error_));
+  level.g_error = static_cast<float>(1.0001 * (coarse.far.gradient_error + gradient_error_));
+  build_patches(level, context.degree, context.iso, context.lattice, context.kernels, far + far_floats, view_.patches);
 }
 
 }  // namespace marrow

@@ -1,12 +1,12 @@
-// What tracing needs of one cell: near sources, the far field, and which of its sub-cells may hold surface.
+// What tracing needs of one cell: near sources, the far field, and polynomials that tell where surface can be.
 #pragma once
 
-#include <cstdint>
 #include <span>
 
 #include "field/trace/block_arena.h"
 #include "field/trace/block_kernels.h"
 #include "field/trace/cell_tree.h"
+#include "field/trace/patches.h"
 
 namespace marrow {
 
@@ -17,8 +17,9 @@ class Block {
     std::span<const Piece> pieces;
     const CellTree& tree;
     const PieceCutter& cutter;
-    const NearFar& coarse;  ///< errors of the coarse level
+    const NearFar& coarse;  ///< errors of the sources that polynomials are made from
     const NearFar& fine;    ///< errors of the fine level, and of the tree's far fields
+    const LatticeErrors& lattice;
     const IsoCurve& iso;
     const BlockKernels& kernels;
     int degree;
@@ -27,7 +28,6 @@ class Block {
   Block(const Context&, const CellTree::Cell&, BlockArena&);
 
   const BlockView& view() const { return view_; }
-  std::uint64_t mask() const { return mask_; }
   const Vec3d& center() const { return center_; }
   double half() const { return half_; }
   /// Certified bounds of the difference between the fine level and the exact field, over the cell.
@@ -38,7 +38,6 @@ class Block {
   Vec3d center_;
   double half_;
   double f_error_ = 0, gradient_error_ = 0;
-  std::uint64_t mask_ = 0;
   BlockView view_;
 };
 

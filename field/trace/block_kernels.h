@@ -28,10 +28,23 @@ struct FieldLevel {
   float f_error = 0, g_error = 0;  ///< added to f and |G| wherever "outside" is to be proved
 };
 
-/// What the kernels read of a block. The coarse level, with its certified errors, finds where the surface can be; the
-/// fine level is the field that is rendered.
+inline constexpr int patch_count = 8;  ///< one for each octant of a block; x is the lowest bit
+
+/// Where in a block surface can be, octant by octant, and the field there as a polynomial with certified errors.
+/// Surface in patch i lies in its box and where normal . x <= offset; an offset of -infinity says there is none.
+struct alignas(32) Patches {
+  float lower[3][patch_count], upper[3][patch_count];  ///< block coordinates
+  float normal[3][patch_count], offset[patch_count];
+  float f_error[patch_count], g_error[patch_count];  ///< against the exact field, over the patch
+  const float* polynomials;                          ///< far_floats for each patch, in coordinates of the patch
+  unsigned by_sources;  ///< bits of patches without a useful polynomial: there the sources must be asked
+};
+
+/// What the kernels read of a block. The patches find where the surface can be; the fine level is the field that is
+/// rendered.
 struct BlockView {
-  FieldLevel coarse, fine;
+  FieldLevel fine;
+  Patches patches;
   int degree = 4;
   IsoCurve::View iso;
 };
@@ -59,9 +72,6 @@ struct PointField {
   float second, third;   ///< M2 and m M3 of tracing.md 3.1, for bounds of f and G nearby
 };
 
-/// 4 x 4 x 4 sub-cells of the block's cube [-1, 1]^3; bit x + 4 y + 16 z is set where the field may reach 1.
-inline constexpr int mask_size = 4;
-
 inline constexpr int far_moment_count = 80;  ///< see FarMoments
 
 inline constexpr int floats_per_piece_group = 11 * lanes;
@@ -84,7 +94,8 @@ struct BlockKernels {
   /// The first t in [t0, t1] where the corrected field reaches 1.
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
   PointField (*point_field)(const BlockView&, const float point[3]);
-  std::uint64_t (*mask)(const BlockView&);
+  /// (f, Gx, Gy, Gz) at the nodes of the lattice (lattice.h) of a cube; room for 128 nodes.
+  void (*lattice_values)(const FieldLevel&, int degree, const float center[3], float half, float* values);
   /// Moments of groups of sources of one exponent about the origin, without the constants of FarMoments.
   void (*far_moments)(const float* groups, int count, int exponent, float* f, float* potential);
   /// Of the eight octants, from groups of pieces: curves, then points.

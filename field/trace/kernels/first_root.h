@@ -1,0 +1,140 @@
+// The first root in a block: patch by patch along the ray. Part of block_kernels_<set>.cpp.
+
+using V8 = float __attribute__((vector_size(32)));
+
+inline V8 load8(const float* p) { return *static_cast<const V8*>(__builtin_assume_aligned(p, 32)); }
+inline V8 smaller(V8 a, V8 b) { return a < b ? a : b; }
+inline V8 larger(V8 a, V8 b) { return a > b ? a : b; }
+
+// Directions that are 0 in an axis become very small: then no product is 0 times infinity.
+inline float nonzero(float d) { return abs_of(d) > 1e-20F ? d : 1e-20F; }
+
+// The stretches of a ray in the patches, nearest first.
+struct PatchWalk {
+  alignas(32) float begin[patch_count], end[patch_count];
+  int count = 0;
+  int order[patch_count];
+
+  PatchWalk(const Patches& p, const LocalRay& ray, float t0, float t1) {
+    V8 enter = V8{} + t0, leave = V8{} + t1, slope{}, height = load8(p.offset);
+    for (int k = 0; k < 3; ++k) {
+      const float inverse = 1 / nonzero(ray.direction[k]), o = ray.origin[k];
+      const V8 a = (load8(p.lower[k]) - o) * inverse, b = (load8(p.upper[k]) - o) * inverse;
+      enter = larger(enter, smaller(a, b));
+      leave = smaller(leave, larger(a, b));
+      slope += load8(p.normal[k]) * ray.direction[k];
+      height -= load8(p.normal[k]) * o;
+    }
+    // normal . (o + t d) <= offset: from this t on, or up to it
+    const V8 tiny = V8{} + 1e-20F;
+    const V8 rising = slope >= 0.0F ? larger(slope, tiny) : slope, at = height / rising;
+    leave = slope >= 0.0F ? smaller(leave, at) : leave;
+    enter = slope < 0.0F ? larger(enter, at) : enter;
+    __builtin_memcpy(begin, &enter, sizeof begin);
+    __builtin_memcpy(end, &leave, sizeof end);
+    for (int i = 0; i < patch_count; ++i)
+      if (begin[i] <= end[i]) insert(i);
+  }
+
+ private:
+  void insert(int patch) {
+    int k = count++;
+    for (; k > 0 && begin[order[k - 1]] > begin[patch]; --k) order[k] = order[k - 1];
+    order[k] = patch;
+  }
+};
+
+// Where fine samples decide between t0, up to which all is certified outside, and t1.
+inline Root decide_between(const BlockView& block, const LocalRay& ray, float t0, float t1, float guess, bool any) {
+  Marcher fine(block, block.fine, ray, t0, t1);
+  Search close(fine, t0, t1);
+  Root root = decide(close, min_of(max_of(guess, t0), t1), any);
+  root.evaluations = fine.evaluations;
+  return root;
+}
+
+// Without a useful polynomial.
+inline Root root_by_sources(const BlockView& block, const LocalRay& ray, float t0, float t1, bool any) {
+  Marcher march(block, block.fine, ray, t0, t1);
+  Search search(march, t0, t1);
+  Root root;
+  float guess = t0;
+  const Approach approached = approach(search, any, guess);
+  root.evaluations = march.evaluations;
+  if (approached == Approach::Missed) return root;
+  if (approached == Approach::SurelyInside) {
+    root.hit = true;
+    root.t = search.inside.t;
+    return root;
+  }
+  root = decide_between(block, ray, search.front, t1, guess, any);
+  root.evaluations += march.evaluations;
+  return root;
+}
+
+// The first run that is not cleared by looking at it more closely. `from` is moved to what is certified.
+inline PatchRay::Run next_run(const PatchRay& polynomial, float& from) {
+  PatchRay::Run run = polynomial.scan(from, 1);
+  float end = 1;
+  for (int zoom = 0; zoom < 3 && run.found && !run.crosses; ++zoom) {
+    end = run.end;
+    run = polynomial.scan(run.begin, end);
+  }
+  from = run.found ? run.end : end;
+  return run;
+}
+
+inline Root root_in_patch(const BlockView& block, int patch, const LocalRay& ray, float t0, float t1, bool any) {
+  const PatchRay polynomial(block, patch, ray, t0, t1);
+  Root all;
+  all.evaluations = 1;
+  constexpr int most_scans = 64;
+  float from = -1;
+  for (int scans = 0; from < 1; ++scans) {
+    PatchRay::Run run{.found = true, .begin = from, .end = 1, .guess = from};
+    if (scans < most_scans) run = next_run(polynomial, from);
+    else from = 1;
+    if (!run.found) continue;
+    if (any && run.surely) {
+      all.hit = true;
+      all.t = polynomial.t_of(run.inside);
+      return all;
+    }
+    const Root root = decide_between(block, ray, max_of(t0, polynomial.t_of(run.begin)),
+                                     min_of(t1, polynomial.t_of(run.end)), polynomial.t_of(run.guess), any);
+    all.evaluations += root.evaluations;
+    all.undecided = min_of(all.undecided, root.undecided);
+    if (!root.hit) continue;
+    all.hit = true;
+    all.t = root.t;
+    return all;
+  }
+  return all;
+}
+
+Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
+  float front = query.t0;
+  Root root;
+  if (query.from_surface) {  // too near for polynomials; one fine certificate leads away
+    Marcher march(block, block.fine, ray, query.t0, query.t1);
+    Search start(march, query.t0, query.t1);
+    start.record(march.sample(query.t0));
+    root.evaluations = march.evaluations;
+    if (start.missed()) return root;
+    front = start.front;
+  }
+  const PatchWalk walk(block.patches, ray, front, query.t1);
+  for (int i = 0; i < walk.count; ++i) {
+    const int patch = walk.order[i];
+    const float t0 = walk.begin[patch], t1 = walk.end[patch];
+    const Root found = block.patches.by_sources >> patch & 1 ? root_by_sources(block, ray, t0, t1, query.any)
+                                                             : root_in_patch(block, patch, ray, t0, t1, query.any);
+    root.evaluations += found.evaluations;
+    root.undecided = min_of(root.undecided, found.undecided);
+    if (!found.hit) continue;
+    root.hit = true;
+    root.t = found.t;
+    return root;
+  }
+  return root;
+}
