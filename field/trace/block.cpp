@@ -116,9 +116,9 @@ FieldLevel write_level(const Level& level, float* sources, float* far) {
 
 Block::Block(const Context& context, const CellTree::Cell& cell, BlockArena& arena)
     : center_(cell.center), half_(cell.half) {
-  const CellTree::Branch& branch = context.tree.branch(cell);
-  FarField far_field = branch.far.of_child(cell.octant);
-  const auto near = context.fine.split(context.pieces, branch.near, center_, half_, far_field);
+  auto [sources, far_field] = context.tree.surroundings(cell);
+  std::vector<PieceIndex> near;
+  for (const SourceRef ref : sources) near.push_back(ref.index());
   const Level fine = make_level(context, context.fine, near, far_field, center_, half_);
   // What is far to the fine level is far to the coarse one too.
   const auto nearest = context.coarse.split(context.pieces, near, center_, half_, far_field);

@@ -64,8 +64,9 @@ inline constexpr int mask_size = 4;
 
 inline constexpr int far_moment_count = 80;  ///< see FarMoments
 
-inline constexpr int floats_per_piece_group = 11 * lanes;
-///< from xyz, along xyz, 1 / length^2 (0 for a point), mass, mass at the smallest radius, largest radius, length
+inline constexpr int floats_per_piece_group = 12 * lanes;
+///< from xyz, along xyz, 1 / length^2 (0 for a point), mass / tau^m, the same at the smallest radius, tau, length, reach.
+///< The sources are within `reach` of the segment, and within `length` of its nearest point.
 
 /// Bounds over the ball around one octant of a cube, in the cube's coordinates.
 struct OctantBounds {
@@ -85,8 +86,8 @@ struct BlockKernels {
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
   PointField (*point_field)(const BlockView&, const float point[3]);
   std::uint64_t (*mask)(const BlockView&);
-  /// Moments of groups of sources of one exponent about the origin, without the constants of FarMoments.
-  void (*far_moments)(const float* groups, int count, int exponent, float* f, float* potential);
+  /// Moments of groups of inverted sources (y, field at the origin, tau), without the constants of FarMoments.
+  void (*far_moments)(const float* groups, int count, float* f, float* potential);
   /// Of the eight octants, from groups of pieces: curves, then points.
   void (*octant_bounds)(const float* pieces, int curve_groups, int point_groups, int degree, OctantBounds*);
 };
