@@ -7,6 +7,7 @@
 #include "field/trace/block.h"
 #include "field/trace/cell_tree.h"
 #include "field/trace/precision.h"
+#include "field/trace/slot_walk.h"
 
 namespace marrow {
 namespace {
@@ -52,30 +53,25 @@ struct BlendTracer::State {
   Correction correction;
   IsoCurve iso;
   PieceCutter cutter;
-  std::vector<Piece> pieces;
+  SourceTree sources;
   const BlockKernels& kernels;
   NearFar coarse, fine;
   LatticeErrors lattice;
-  CellTree tree;
   mutable BlockArena arena;
-  mutable std::unique_ptr<std::atomic<const Block*>[]> blocks;
+  CellTree tree;
 
   State(BlendField f, const TraceOptions& options, const BlockKernels& k)
       : field(std::move(f)),
         correction(correction_of(field)),
         iso(correction, field.alpha),
         cutter(field.degree, iso.critical_field()),
-        pieces(cutter.cut(field)),
+        sources(cutter.cut(field), field.degree),
         kernels(k),
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
         fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
         lattice(field.degree),
-        tree(pieces, fine, iso, kernels, field.degree, cells_for(pieces.size())),
-        blocks(new std::atomic<const Block*>[tree.cells().size()] {}) {}
-  ~State() {
-    for (std::size_t i = 0; i < tree.cells().size(); ++i) delete blocks[i].load();
-  }
-  Block::Context context() const { return {pieces, tree, cutter, coarse, fine, lattice, iso, kernels, field.degree}; }
+        tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())) {}
+  Block::Context context() const { return {sources.pieces(), tree, cutter, coarse, fine, lattice, iso, kernels, field.degree}; }
 };
 
 Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const TraceOptions& options) {
@@ -94,28 +90,64 @@ Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const T
 BlendTracer::BlendTracer(std::unique_ptr<State> state) : state_(std::move(state)) {}
 BlendTracer::~BlendTracer() = default;
 
-std::size_t BlendTracer::cell_count() const { return state_->tree.cells().size(); }
-Box3 BlendTracer::cell_box(std::size_t cell) const { return state_->tree.cells()[cell].box(); }
+std::size_t BlendTracer::tile_count() const { return state_->tree.tile_count(); }
+Box3 BlendTracer::tile_box(std::size_t tile) const { return state_->tree.tile_box(tile); }
 const BlendField& BlendTracer::field() const { return state_->field; }
 
-// Two threads may build the same block; both get the same content, and one copy is kept.
-const Block& BlendTracer::block(std::size_t cell) const {
-  std::atomic<const Block*>& slot = state_->blocks[cell];
-  if (const Block* ready = slot.load(std::memory_order_acquire)) return *ready;
-  auto made = std::make_unique<const Block>(state_->context(), state_->tree.cells()[cell], state_->arena);
-  const Block* expected = nullptr;
-  if (slot.compare_exchange_strong(expected, made.get(), std::memory_order_acq_rel)) return *made.release();
-  return *expected;
+const Block& BlendTracer::block(const Tile& tile, int slot) const {
+  return tile.block(slot).get(
+      [&] { return std::make_unique<const Block>(state_->context(), CellTree::cell(tile, slot), state_->arena); });
 }
 
-std::optional<CellHit> BlendTracer::first_hit(std::size_t cell, const Ray& ray, bool any, CellLog& log) const {
+// A ray on its way through tiles.
+struct BlendTracer::Walk {
+  const Ray& ray;
+  Vec3d inverse;  // 1 / direction
+  bool any;
+};
+
+std::optional<CellHit> BlendTracer::first_hit(std::size_t tile, const Ray& ray, bool any, CellLog& log) const {
   const Vec3d& direction = ray.direction;
-  const Vec3d inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
-  auto [enter, exit] = clip(cell_box(cell), ray, inverse);
+  const Walk walk{ray, {1 / direction.x, 1 / direction.y, 1 / direction.z}, any};
+  auto [enter, exit] = clip(tile_box(tile), ray, walk.inverse);
   log.enter = enter;
   if (any) exit = std::min(exit, ray.t_max);
   if (!(enter < exit)) return {};
-  const Block& b = block(cell);
+  const auto hit = hit_in(state_->tree.tile(tile), walk, enter, exit, log);
+  return hit && hit->t <= ray.t_max ? hit : std::nullopt;
+}
+
+// Slots in the ray's order; t is counted from the point of the ray nearest to the middle of the tile.
+std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Walk& walk, double enter, double exit,
+                                           CellLog& log) const {
+  const auto& [center, half, level, parent, own_slot] = tile.place();
+  const Ray& ray = walk.ray;
+  const double t_near = dot(center - ray.origin, ray.direction), scale = 1 / half;
+  const Vec3d start = (ray.origin - center + ray.direction * t_near) * scale;
+  SlotWalk slots(start, ray.direction, walk.inverse, (enter - t_near) * scale, (exit - t_near) * scale);
+  const TileContent& content = tile.content();
+  double begin = enter;
+  for (bool more = true; more;) {
+    const int octant = path_of(slots.slot()).outer;
+    const bool large = content.large_cells >> octant & 1;
+    const int slot = large ? slot_at({octant, 0}) : slots.slot();
+    double last = slots.end();
+    while ((more = slots.advance()) && large && path_of(slots.slot()).outer == octant) last = slots.end();
+    const double end = std::clamp(t_near + last * half, begin, exit);
+    if (!(begin < end)) continue;
+    std::optional<CellHit> hit;
+    if (content.cells >> slot & 1) hit = hit_in(block(tile, slot), walk, begin, end, log);
+    else if (content.tiles >> slot & 1) hit = hit_in(state_->tree.child(tile, slot), walk, begin, end, log);
+    if (hit) return hit;
+    begin = end;
+  }
+  return {};
+}
+
+std::optional<CellHit> BlendTracer::hit_in(const Block& b, const Walk& in_world, double enter, double exit,
+                                           CellLog& log) const {
+  const auto& [ray, inverse, any] = in_world;
+  const Vec3d& direction = ray.direction;
   // Block coordinates, with t counted from the point of the ray nearest to the block's centre.
   const double t_near = dot(b.center() - ray.origin, ray.direction), scale = 1 / b.half();
   const Vec3d start = (ray.origin - b.center() + direction * t_near) * scale;
@@ -133,12 +165,12 @@ std::optional<CellHit> BlendTracer::first_hit(std::size_t cell, const Ray& ray, 
   log.evaluations += static_cast<std::uint32_t>(root.evaluations);
   log.undecided = std::min(log.undecided, world_t(root.undecided));
   if (!root.hit) return {};
-  const double t = std::clamp(world_t(root.t), enter, exit);
-  return t <= ray.t_max ? std::optional(CellHit{t}) : std::nullopt;
+  return CellHit{std::clamp(world_t(root.t), enter, exit)};
 }
 
-SurfacePoint BlendTracer::surface_at(std::size_t cell, const Vec3d& position) const {
-  const Block& b = block(cell);
+SurfacePoint BlendTracer::surface_at(std::size_t tile, const Vec3d& position) const {
+  const CellTree::Cell cell = state_->tree.nearest_cell(tile, position);
+  const Block& b = block(*cell.tile, cell.slot);
   const Vec3d x = (position - b.center()) / b.half();
   const float local[3] = {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)};
   const PointField f = state_->kernels.point_field(b.view(), local);
@@ -159,16 +191,20 @@ SurfacePoint BlendTracer::surface_at(std::size_t cell, const Vec3d& position) co
 
 TraceStatistics BlendTracer::statistics() const {
   TraceStatistics s;
-  s.cells = cell_count();
-  s.bytes = state_->tree.bytes() + state_->pieces.capacity() * sizeof(Piece) + s.cells * sizeof(void*) +
-            state_->arena.bytes();
-  for (std::size_t i = 0; i < s.cells; ++i)
-    if (const Block* b = state_->blocks[i].load()) {
+  const CellTree::Size size = state_->tree.size();
+  s.tiles = tile_count();
+  s.cells = size.cells;
+  s.bytes = size.bytes + state_->sources.bytes() + state_->arena.bytes();
+  state_->tree.for_each_tile(false, [&](const Tile& tile) {
+    for (std::uint64_t left = tile.content().cells; left != 0; left &= left - 1) {
+      const Block* b = tile.block(std::countr_zero(left)).peek();
+      if (b == nullptr) continue;
       ++s.blocks;
       s.bytes += sizeof(Block);
       s.sources += static_cast<std::size_t>((b->view().fine.curve_groups + b->view().fine.point_groups) * lanes);
       s.largest_error = std::max(s.largest_error, b->f_error() + b->gradient_error() / state_->field.degree);
     }
+  });
   return s;
 }
 

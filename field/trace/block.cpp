@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 #include "field/trace/source_groups.h"
@@ -116,9 +117,9 @@ FieldLevel write_level(const Level& level, float* sources, float* far) {
 
 Block::Block(const Context& context, const CellTree::Cell& cell, BlockArena& arena)
     : center_(cell.center), half_(cell.half) {
-  const CellTree::Branch& branch = context.tree.branch(cell);
-  FarField far_field = branch.far.of_child(cell.octant);
-  const auto near = context.fine.split(context.pieces, branch.near, center_, half_, far_field);
+  auto [sources, far_field] = context.tree.surroundings(cell);
+  std::vector<PieceIndex> near;
+  for (const SourceRef ref : sources) near.push_back(ref.index());
   const Level fine = make_level(context, context.fine, near, far_field, center_, half_);
   // What is far to the fine level is far to the coarse one too.
   const auto nearest = context.coarse.split(context.pieces, near, center_, half_, far_field);
@@ -126,18 +127,27 @@ Block::Block(const Context& context, const CellTree::Cell& cell, BlockArena& are
   f_error_ = fine.far.f_error;
   gradient_error_ = fine.far.gradient_error;
 
-  const std::size_t fine_floats = fine.source_floats();
-  float* const floats = arena.allocate(fine_floats + (1 + patch_count) * far_floats);
-  float* const far = floats + fine_floats;
-  view_ = {.fine = write_level(fine, floats, far), .patches = {}, .degree = context.degree, .iso = context.iso.view()};
-
   // The polynomials are compared with the fine level, so both errors count.
   std::vector<SourceGroup> memory((coarse.source_floats() + far_floats) / floats_per_group + 1);
-  float* const sources = memory.front().x;
-  FieldLevel level = write_level(coarse, sources, sources + coarse.source_floats());
+  float* const scratch = memory.front().x;
+  FieldLevel level = write_level(coarse, scratch, scratch + coarse.source_floats());
   level.f_error = static_cast<float>(1.0001 * (coarse.far.f_error + f_error_));
   level.g_error = static_cast<float>(1.0001 * (coarse.far.gradient_error + gradient_error_));
-  build_patches(level, context.degree, context.iso, context.lattice, context.kernels, far + far_floats, view_.patches);
+  const Patches patches = make_patches(level, context.degree, context.iso, context.lattice, context.kernels);
+
+  constexpr std::size_t node_floats = sizeof(PatchNode) / sizeof(float);
+  const std::size_t all_node_floats = patches.nodes.size() * node_floats;
+  float* const nodes = arena.allocate(all_node_floats + patches.polynomials.size() + fine.source_floats() + far_floats);
+  std::memcpy(nodes, patches.nodes.data(), all_node_floats * sizeof(float));
+  float* const fine_sources = nodes + all_node_floats;
+  float* const fine_far = fine_sources + fine.source_floats();
+  float* const polynomials = fine_far + far_floats;
+  std::copy(patches.polynomials.begin(), patches.polynomials.end(), polynomials);
+  view_ = {.fine = write_level(fine, fine_sources, fine_far),
+           .patches = reinterpret_cast<const PatchNode*>(nodes),
+           .polynomials = polynomials,
+           .degree = context.degree,
+           .iso = context.iso.view()};
 }
 
 }  // namespace marrow

@@ -14,7 +14,7 @@ namespace marrow {
 class Block {
  public:
   struct Context {
-    std::span<const Piece> pieces;
+    std::span<const Piece> pieces;  ///< in the order of the source tree
     const CellTree& tree;
     const PieceCutter& cutter;
     const NearFar& coarse;  ///< errors of the sources that polynomials are made from

@@ -28,23 +28,25 @@ struct FieldLevel {
   float f_error = 0, g_error = 0;  ///< added to f and |G| wherever "outside" is to be proved
 };
 
-inline constexpr int patch_count = 8;  ///< one for each octant of a block; x is the lowest bit
-
-/// Where in a block surface can be, octant by octant, and the field there as a polynomial with certified errors.
-/// Surface in patch i lies in its box and where normal . x <= offset; an offset of -infinity says there is none.
-struct alignas(32) Patches {
-  float lower[3][patch_count], upper[3][patch_count];  ///< block coordinates
-  float normal[3][patch_count], offset[patch_count];
-  float f_error[patch_count], g_error[patch_count];  ///< against the exact field, over the patch
-  const float* polynomials;                          ///< far_floats for each patch, in coordinates of the patch
-  unsigned by_sources;  ///< bits of patches without a useful polynomial: there the sources must be asked
+/// Eight octants of a cube of a block, x the lowest bit: where in them surface can be, and the field there as
+/// polynomials with certified errors, or as octants again. Surface in octant i lies in its box and where
+/// normal . x <= offset; an offset of -1e30 says there is none. Boxes and planes in block coordinates.
+struct alignas(64) PatchNode {
+  static constexpr int by_sources = -1;  ///< no useful polynomial: the sources must be asked
+  float lower[3][8], upper[3][8];
+  float normal[3][8], offset[8];
+  float f_error[8], g_error[8];  ///< of the polynomials against the exact field, over the octant
+  int polynomial[8];             ///< in units of far_floats, in coordinates of the octant; or by_sources
+  int child[8];                  ///< node that divides the octant further; 0 for none
+  float center[3], half;
 };
 
 /// What the kernels read of a block. The patches find where the surface can be; the fine level is the field that is
 /// rendered.
 struct BlockView {
   FieldLevel fine;
-  Patches patches;
+  const PatchNode* patches = nullptr;  ///< the first divides the block
+  const float* polynomials = nullptr;
   int degree = 4;
   IsoCurve::View iso;
 };
@@ -74,8 +76,9 @@ struct PointField {
 
 inline constexpr int far_moment_count = 80;  ///< see FarMoments
 
-inline constexpr int floats_per_piece_group = 11 * lanes;
-///< from xyz, along xyz, 1 / length^2 (0 for a point), mass, mass at the smallest radius, largest radius, length
+inline constexpr int floats_per_piece_group = 12 * lanes;
+///< from xyz, along xyz, 1 / length^2 (0 for a point), mass / tau^m, the same at the smallest radius, tau, length, reach.
+///< The sources are within `reach` of the segment, and within `length` of its nearest point.
 
 /// Bounds over the ball around one octant of a cube, in the cube's coordinates.
 struct OctantBounds {
@@ -83,6 +86,19 @@ struct OctantBounds {
   float f_low = 0;
   float weight = 0, weighted_radius = 0;  ///< fields of the pieces at the centre, and the same times their radii
   bool touches = false;                   ///< a piece comes into the ball
+};
+
+struct BallBounds {
+  float f_high = 0, g_high = 0, f_low = 0;  ///< the upper ones when nothing touches
+  bool touches = false;                     ///< a source comes into the ball
+};
+
+inline constexpr int lattice_stride = 128;  ///< nodes of a lattice in whole vectors
+
+/// How far the field can be above the values at all eight corners of a cell of the lattice, and below them.
+struct LatticeRaise {
+  float field, gradient;
+  float surely_inside;  ///< from this f on all is inside
 };
 
 struct BlockKernels {
@@ -94,10 +110,14 @@ struct BlockKernels {
   /// The first t in [t0, t1] where the corrected field reaches 1.
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
   PointField (*point_field)(const BlockView&, const float point[3]);
-  /// (f, Gx, Gy, Gz) at the nodes of the lattice (lattice.h) of a cube; room for 128 nodes.
+  /// Of the field of a level, its errors included, over a ball.
+  BallBounds (*ball_bounds)(const FieldLevel&, int degree, const float center[3], float radius);
+  /// (f, Gx, Gy, Gz) at the nodes of the lattice (lattice.h) of a cube; room for lattice_stride nodes.
   void (*lattice_values)(const FieldLevel&, int degree, const float center[3], float half, float* values);
-  /// Moments of groups of sources of one exponent about the origin, without the constants of FarMoments.
-  void (*far_moments)(const float* groups, int count, int exponent, float* f, float* potential);
+  /// Bit i + 4 j + 16 k for each cell of the lattice that may hold surface, from the values at its nodes.
+  std::uint64_t (*lattice_marks)(const IsoCurve::View&, const LatticeRaise&, const float* values);
+  /// Moments of groups of inverted sources (y, field at the origin, tau), without the constants of FarMoments.
+  void (*far_moments)(const float* groups, int count, float* f, float* potential);
   /// Of the eight octants, from groups of pieces: curves, then points.
   void (*octant_bounds)(const float* pieces, int curve_groups, int point_groups, int degree, OctantBounds*);
 };

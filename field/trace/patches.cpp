@@ -12,9 +12,7 @@ namespace marrow {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr int sub_cells = lattice_side - 1;  // per axis
-constexpr float patch_half = 0.5F;
-constexpr int padded_nodes = 128;
+constexpr int cells_per_axis = lattice_side - 1;
 
 // Boxes and planes overlap by this much of a block's half side, far more than the rounding of rays in float.
 constexpr float overlap = 1e-4F;
@@ -23,36 +21,45 @@ constexpr float overlap = 1e-4F;
 // change to powers, relative to the largest value.
 constexpr float rounding = 5e-5F;
 
+// An octant is divided when its polynomial could be off by more than this in C, down to `deepest` divisions of a block.
+// An error of `useless` leaves nothing to be told.
+constexpr float accurate_enough = 0.06F, useless = 0.3F;
+constexpr int deepest = 3;
+
 struct Errors {
   float field = 0, gradient = 0;
 };
 
-void add_lattice_errors(const float* group, int groups, int exponent, const LatticeError& table, const float (&c)[3],
+struct Cube {
+  float center[3], half;
+
+  Cube octant(int i) const {
+    Cube c{.center = {}, .half = 0.5F * half};
+    for (int k = 0; k < 3; ++k) c.center[k] = center[k] + (i >> k & 1 ? c.half : -c.half);
+    return c;
+  }
+};
+
+void add_lattice_errors(const float* group, int groups, int exponent, const LatticeError& table, const Cube& cube,
                         Errors& errors) {
-  constexpr float per_half = 1 / patch_half;
+  const float per_half = 1 / cube.half;
   float scale = 1;
   for (int i = 0; i < exponent; ++i) scale *= per_half;
   for (int k = 0; k < groups; ++k, group += floats_per_group)
     for (int lane = 0; lane < lanes; ++lane) {
-      if (!(group[48 + lane] > 0)) continue;  // unused
       const float* s = group + lane;
-      const float dx = (s[0] - c[0]) * per_half, dy = (s[16] - c[1]) * per_half, dz = (s[32] - c[2]) * per_half;
+      if (!(s[48] > 0)) continue;  // unused
+      const float dx = (s[0] - cube.center[0]) * per_half, dy = (s[16] - cube.center[1]) * per_half,
+                  dz = (s[32] - cube.center[2]) * per_half;
       const LatticeError::Bound e = table.at(dx * dx + dy * dy + dz * dz);
       errors.field += s[48] * scale * e.field;
       errors.gradient += s[48] * scale * s[64] * per_half * e.gradient;
     }
 }
 
-Errors lattice_errors(const FieldLevel& level, int degree, const LatticeErrors& tables, const float (&c)[3]) {
-  Errors e;
-  add_lattice_errors(level.sources, level.curve_groups, degree, tables.curves, c, e);
-  add_lattice_errors(level.sources + static_cast<long>(level.curve_groups) * floats_per_group, level.point_groups,
-                     degree - 1, tables.points, c, e);
-  return e;
-}
-
-// How far a polynomial can rise above all corners of a sub-cell: by the error of interpolation between corners,
-// sum over axes of side^2 / 8 times the largest second derivative. |G| by the length of that of its components.
+// How far a polynomial can rise above all corners of a cell of the lattice: by the error of interpolation between
+// corners, the sum over axes of side^2 / 8 times the largest second derivative. |G| by the length of that of its
+// components.
 Errors bends(const float* polynomial) {
   float second[4] = {};
   for (std::size_t i = 4; i < far_monomials; ++i) {
@@ -60,143 +67,154 @@ Errors bends(const float* polynomial) {
     const auto factor = static_cast<float>(m.a * (m.a - 1) + m.b * (m.b - 1) + m.c * (m.c - 1));
     for (std::size_t k = 0; k < 4; ++k) second[k] += factor * std::fabs(polynomial[4 * i + k]);
   }
-  constexpr float side = 2.0F / sub_cells, scale = 1.01F * side * side / 8;
-  return {scale * second[0], scale * std::sqrt(second[1] * second[1] + second[2] * second[2] + second[3] * second[3])};
+  constexpr float side = 2.0F / cells_per_axis, scale = 1.01F * side * side / 8;
+  return {scale * second[0],
+          scale * std::sqrt(second[1] * second[1] + second[2] * second[2] + second[3] * second[3])};
 }
 
-// Values at the nodes of one patch.
-struct Nodes {
-  alignas(64) float values[4 * padded_nodes];
-  float x(int i) const { return values[4 * i]; }
-  float y(int i) const {
-    const float* g = values + 4 * i + 1;
-    return std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-  }
-};
+// Box and plane around what is included.
+struct Fit {
+  float lower[3] = {infinity, infinity, infinity}, upper[3] = {-infinity, -infinity, -infinity};
+  float normal[3] = {}, offset = -1e30F;
 
-constexpr int node_index(int i, int j, int k) { return i + lattice_side * j + lattice_side * lattice_side * k; }
+  bool empty() const { return !(lower[0] <= upper[0]); }
 
-// Bit i + 4 j + 16 k for each sub-cell that may hold surface, or lie inside.
-std::uint64_t marked_cells(const Nodes& nodes, const IsoCurve& iso, const Errors& raise) {
-  float x[lattice_nodes], y[lattice_nodes];
-  for (int i = 0; i < lattice_nodes; ++i) {
-    x[i] = nodes.x(i);
-    y[i] = nodes.y(i);
-  }
-  std::uint64_t bits = 0;
-  for (int cell = 0; cell < sub_cells * sub_cells * sub_cells; ++cell) {
-    const int base = node_index(cell % sub_cells, cell / sub_cells % sub_cells, cell / (sub_cells * sub_cells));
-    float low = infinity, high = 0, steep = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-      const int i = base + node_index(corner & 1, corner >> 1 & 1, corner >> 2);
-      low = std::min(low, x[i]);
-      high = std::max(high, x[i]);
-      steep = std::max(steep, y[i]);
-    }
-    const float x_low = std::max(0.0F, low - raise.field);
-    if (!iso.outside(static_cast<double>(x_low), static_cast<double>(high + raise.field),
-                     static_cast<double>(steep + raise.gradient)))
-      bits |= std::uint64_t{1} << cell;
-  }
-  return bits;
-}
-
-// Box and plane around the marked sub-cells.
-class Fit {
- public:
-  Fit(const float (&center)[3], const float* polynomial) {
-    float length2 = 0;
-    for (int k = 0; k < 3; ++k) {
-      center_[k] = center[k];
-      normal_[k] = -polynomial[4 * (1 + k)];
-      length2 += normal_[k] * normal_[k];
-    }
-    const float scale = length2 > 0 ? 1 / std::sqrt(length2) : 0;
-    for (float& n : normal_) n *= scale;
-  }
-
-  void include(int cell) {
-    constexpr float side = 2 * patch_half / sub_cells;
-    const int at[3] = {cell % sub_cells, cell / sub_cells % sub_cells, cell / (sub_cells * sub_cells)};
+  void include(const Cube& cube) {
     float top = 0;
     for (int k = 0; k < 3; ++k) {
-      const float low = center_[k] - patch_half + side * static_cast<float>(at[k]), high = low + side;
-      lower_[k] = std::min(lower_[k], low);
-      upper_[k] = std::max(upper_[k], high);
-      top += normal_[k] * (normal_[k] > 0 ? high : low);
+      const float low = cube.center[k] - cube.half, high = cube.center[k] + cube.half;
+      lower[k] = std::min(lower[k], low);
+      upper[k] = std::max(upper[k], high);
+      top += normal[k] * (normal[k] > 0 ? high : low);
     }
-    offset_ = std::max(offset_, top);
+    offset = std::max(offset, top);
   }
 
-  void write(int patch, Patches& out) const {
-    for (int k = 0; k < 3; ++k) {
-      out.lower[k][patch] = lower_[k] - overlap;
-      out.upper[k][patch] = upper_[k] + overlap;
-      out.normal[k][patch] = normal_[k];
-    }
-    out.offset[patch] = offset_ + overlap;
+  // `normal` of length 1, or 0.
+  void set_normal(const float* gradient) {
+    const float length2 = gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2];
+    const float scale = length2 > 0 ? -1 / std::sqrt(length2) : 0;
+    for (int k = 0; k < 3; ++k) normal[k] = gradient[k] * scale;
   }
-
- private:
-  float center_[3], normal_[3];
-  float lower_[3] = {infinity, infinity, infinity}, upper_[3] = {-infinity, -infinity, -infinity};
-  float offset_ = -infinity;
 };
 
-// No surface: nothing is below the plane.
-void write_empty(int patch, Patches& out) {
-  for (int k = 0; k < 3; ++k) out.lower[k][patch] = out.upper[k][patch] = out.normal[k][patch] = 0;
-  out.offset[patch] = -1e30F;
-}
+class Builder {
+ public:
+  Builder(const FieldLevel& level, int degree, const IsoCurve& iso, const LatticeErrors& tables,
+          const BlockKernels& kernels)
+      : level_(level), degree_(degree), iso_(iso), view_(iso.view()), tables_(tables), kernels_(kernels) {}
 
-void write_whole(int patch, const float (&center)[3], Patches& out) {
-  for (int k = 0; k < 3; ++k) {
-    out.lower[k][patch] = center[k] - patch_half - overlap;
-    out.upper[k][patch] = center[k] + patch_half + overlap;
-    out.normal[k][patch] = 0;
+  // Divides a cube; returns the box around the surface in it. The node is appended.
+  Fit divide(const Cube& cube, int depth) {
+    const std::size_t at = out.nodes.size();
+    out.nodes.push_back({});
+    PatchNode node{};
+    for (int k = 0; k < 3; ++k) node.center[k] = cube.center[k];
+    node.half = cube.half;
+    Fit all;
+    for (int i = 0; i < 8; ++i) {
+      const Cube octant = cube.octant(i);
+      const Fit fit = fill(node, i, octant, depth);
+      for (int k = 0; k < 3; ++k) {
+        node.lower[k][i] = fit.empty() ? 0 : fit.lower[k] - overlap;
+        node.upper[k][i] = fit.empty() ? 0 : fit.upper[k] + overlap;
+        node.normal[k][i] = fit.normal[k];
+        all.lower[k] = std::min(all.lower[k], fit.lower[k]);
+        all.upper[k] = std::max(all.upper[k], fit.upper[k]);
+      }
+      node.offset[i] = fit.offset + overlap;
+    }
+    all.offset = all.empty() ? -1e30F : 1e30F;
+    out.nodes[at] = node;
+    return all;
   }
-  out.offset[patch] = 1e30F;
-}
+
+  Patches out;
+
+ private:
+  bool holds_surface(const Cube& cube) const {
+    const BallBounds b = kernels_.ball_bounds(level_, degree_, cube.center, cube.half * 1.7322F);
+    if (static_cast<double>(b.f_low) > iso_.critical_field() * 1.00001) return false;
+    return b.touches || !iso_.outside(0, static_cast<double>(b.f_high), static_cast<double>(b.g_high));
+  }
+
+  Fit fill(PatchNode& node, int octant, const Cube& cube, int depth) {
+    if (!holds_surface(cube)) return {};
+    Errors e{level_.f_error, level_.g_error};
+    add_lattice_errors(level_.sources, level_.curve_groups, degree_, tables_.curves, cube, e);
+    add_lattice_errors(level_.sources + static_cast<long>(level_.curve_groups) * floats_per_group, level_.point_groups,
+                       degree_ - 1, tables_.points, cube, e);
+    const float total = e.field + e.gradient / static_cast<float>(degree_);
+    if (!(total < accurate_enough) && depth < deepest) {
+      node.child[octant] = static_cast<int>(out.nodes.size());
+      return divide(cube, depth + 1);
+    }
+    if (!(total < useless)) {
+      node.polynomial[octant] = PatchNode::by_sources;
+      Fit fit;
+      fit.include(cube);
+      fit.offset = 1e30F;
+      return fit;
+    }
+    return add_patch(node, octant, cube, e);
+  }
+
+  Fit add_patch(PatchNode& node, int octant, const Cube& cube, const Errors& e) {
+    alignas(64) float values[4 * lattice_stride];
+    kernels_.lattice_values(level_, degree_, cube.center, cube.half, values);
+    float polynomial[far_floats], x_most = 0, y_most = 0;
+    lattice_polynomial(values, polynomial);
+    for (int i = 0; i < lattice_nodes; ++i) {
+      const float* v = values + 4 * i;
+      x_most = std::max(x_most, v[0]);
+      y_most = std::max(y_most, std::fabs(v[1]) + std::fabs(v[2]) + std::fabs(v[3]));
+    }
+    const float f_error = e.field + rounding * x_most, g_error = e.gradient + rounding * y_most;
+    const Errors bend = bends(polynomial);
+    const std::uint64_t marks = kernels_.lattice_marks(
+        view_,
+        {bend.field + 2 * f_error, bend.gradient + 2 * g_error, static_cast<float>(1.0001 * iso_.critical_field())},
+        values);
+    Fit fit;
+    if (marks == 0) return fit;
+    const float gradient[3] = {polynomial[4], polynomial[8], polynomial[12]};
+    fit.set_normal(gradient);
+    include(marks, cube, fit);
+    node.f_error[octant] = f_error;
+    node.g_error[octant] = g_error;
+    node.polynomial[octant] = static_cast<int>(out.polynomials.size()) / far_floats;
+    out.polynomials.insert(out.polynomials.end(), polynomial, polynomial + far_floats);
+    return fit;
+  }
+
+  static void include(std::uint64_t marks, const Cube& cube, Fit& fit) {
+    const float half = cube.half / cells_per_axis;
+    for (; marks != 0; marks &= marks - 1) {
+      const int i = __builtin_ctzll(marks);
+      const int at[3] = {i % cells_per_axis, i / cells_per_axis % cells_per_axis,
+                         i / (cells_per_axis * cells_per_axis)};
+      Cube cell{.center = {}, .half = half};
+      for (int k = 0; k < 3; ++k)
+        cell.center[k] = cube.center[k] - cube.half + half * static_cast<float>(2 * at[k] + 1);
+      fit.include(cell);
+    }
+  }
+
+  const FieldLevel& level_;
+  int degree_;
+  const IsoCurve& iso_;
+  IsoCurve::View view_;
+  const LatticeErrors& tables_;
+  const BlockKernels& kernels_;
+};
 
 }  // namespace
 
-void build_patches(const FieldLevel& level, int degree, const IsoCurve& iso, const LatticeErrors& tables,
-                   const BlockKernels& kernels, float* polynomials, Patches& out) {
-  out.polynomials = polynomials;
-  out.by_sources = 0;
-  for (int patch = 0; patch < patch_count; ++patch) {
-    float center[3];
-    for (int k = 0; k < 3; ++k) center[k] = patch >> k & 1 ? patch_half : -patch_half;
-    const Errors lattice = lattice_errors(level, degree, tables, center);
-    // An error of a third of the field leaves nothing to be told.
-    constexpr float useless = 0.3F;
-    if (!(lattice.field + lattice.gradient / static_cast<float>(degree) < useless)) {
-      out.by_sources |= 1U << patch;
-      write_whole(patch, center, out);
-      continue;
-    }
-    Nodes nodes;
-    kernels.lattice_values(level, degree, center, patch_half, nodes.values);
-    float* polynomial = polynomials + patch * far_floats;
-    lattice_polynomial(nodes.values, polynomial);
-    float x_most = 0, y_most = 0;
-    for (int i = 0; i < lattice_nodes; ++i) {
-      x_most = std::max(x_most, nodes.x(i));
-      y_most = std::max(y_most, nodes.y(i));
-    }
-    out.f_error[patch] = level.f_error + lattice.field + rounding * x_most;
-    out.g_error[patch] = level.g_error + lattice.gradient + rounding * y_most;
-    const Errors bend = bends(polynomial);
-    const std::uint64_t bits =
-        marked_cells(nodes, iso, {bend.field + 2 * out.f_error[patch], bend.gradient + 2 * out.g_error[patch]});
-    if (bits == 0) {
-      write_empty(patch, out);
-      continue;
-    }
-    Fit fit(center, polynomial);
-    for (std::uint64_t left = bits; left != 0; left &= left - 1) fit.include(__builtin_ctzll(left));
-    fit.write(patch, out);
-  }
+Patches make_patches(const FieldLevel& level, int degree, const IsoCurve& iso, const LatticeErrors& tables,
+                     const BlockKernels& kernels) {
+  Builder builder(level, degree, iso, tables, kernels);
+  builder.divide({.center = {0, 0, 0}, .half = 1}, 1);
+  return std::move(builder.out);
 }
 
 }  // namespace marrow

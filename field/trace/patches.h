@@ -1,8 +1,7 @@
-// The field of a block in eight cubes, the patches: a polynomial each, accurate enough to tell where the surface can
-// be.
+// The field of a block in patches: cubes with a polynomial each, accurate enough to tell where surface can be.
 #pragma once
 
-#include <array>
+#include <vector>
 
 #include "field/trace/block_kernels.h"
 #include "field/trace/lattice.h"
@@ -17,11 +16,15 @@ struct LatticeErrors {
   explicit LatticeErrors(int degree) : curves(degree), points(degree - 1) {}
 };
 
-/// Builds the patches of one block from its field `level`. In each, surface can only be in the box and below the plane:
-/// sub-cells of a quarter of the patch's side are ruled out where the largest values at their corners, raised by what
-/// the polynomial can bend between them and by all errors, lie outside the iso curve.
-/// Polynomials are written to `polynomials`, room for patch_count of them.
-void build_patches(const FieldLevel& level, int degree, const IsoCurve&, const LatticeErrors&, const BlockKernels&,
-                   float* polynomials, Patches&);
+/// The patches of one block. In each, surface can only be in a box and below a plane: cells of a quarter of the patch's
+/// side are ruled out where the values at their corners, raised by what the polynomial can bend between them and by all
+/// errors, lie outside the iso curve, or so far above 1 that all is inside.
+struct Patches {
+  std::vector<PatchNode> nodes;  ///< the first divides the block
+  std::vector<float> polynomials;
+};
+
+/// `level` is the field, in block coordinates; it must outlive nothing.
+Patches make_patches(const FieldLevel& level, int degree, const IsoCurve&, const LatticeErrors&, const BlockKernels&);
 
 }  // namespace marrow

@@ -20,7 +20,7 @@ FieldSolid::FieldSolid(std::unique_ptr<BlendTracer> tracer, const Affine& world_
       in_world_(world_from_local == Affine{}),
       material_(of_object) {}
 
-Box3 FieldSolid::element_box(std::size_t element) const { return to_world(tracer_->cell_box(element)); }
+Box3 FieldSolid::element_box(std::size_t element) const { return to_world(tracer_->tile_box(element)); }
 
 // The skeletons and one radius: surfaces bulge further only where skeletons are dense.
 Box3 FieldSolid::extent() const {

@@ -1,4 +1,4 @@
-// One placed blend as a solid: its elements are the cells of its tracer.
+// One placed blend as a solid: its elements are the tiles of its tracer.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ class FieldSolid final : public Solid {
  public:
   static Result<std::unique_ptr<FieldSolid>> make(PlacedBlend, MaterialId of_object, const TraceOptions&);
 
-  std::size_t element_count() const override { return tracer_->cell_count(); }
+  std::size_t element_count() const override { return tracer_->tile_count(); }
   Box3 element_box(std::size_t) const override;
   Box3 extent() const override;
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;

@@ -22,8 +22,8 @@ class AllCells {
     auto made = BlendTracer::make(std::move(field), {.instruction_set = instruction_set});
     if (!made) throw std::runtime_error("no tracer");
     tracer_ = std::move(*made);
-    for (std::size_t i = 0; i < tracer_->cell_count(); ++i) {
-      boxes_.push_back(tracer_->cell_box(i));
+    for (std::size_t i = 0; i < tracer_->tile_count(); ++i) {
+      boxes_.push_back(tracer_->tile_box(i));
       bounds_.include(boxes_.back());
     }
   }

@@ -58,7 +58,7 @@ TEST(Block, LevelsAreWithinTheirStatedErrors) {
     const Stage stage(random_scene(random, s, random.whole(2, 12)));
     for (int i = 0; i < 40; ++i, ++blocks) {
       const Block block =
-          stage.block(static_cast<std::size_t>(random.whole(0, static_cast<int>(stage.tree.cells().size()) - 1)));
+          stage.block(static_cast<std::size_t>(random.whole(0, static_cast<int>(stage.cells.size()) - 1)));
       const BlockView& view = block.view();
       largest_fine = std::max(largest_fine, block.f_error() + block.gradient_error() / s.degree);
       for (int k = 0; k < 25; ++k) {
@@ -80,7 +80,7 @@ TEST(Block, ErrorIsWithinTheTolerance) {
   Random random(62);
   for (const Setting& s : settings()) {
     const Stage stage(random_scene(random, s, 12));
-    for (std::size_t i = 0; i < stage.tree.cells().size(); i += 29) {
+    for (std::size_t i = 0; i < stage.cells.size(); i += 29) {
       const Block block = stage.block(i);
       EXPECT_LT(block.f_error() + block.gradient_error() / s.degree, 1e-5 * (s.degree - 1)) << name_of(s);
     }
@@ -94,7 +94,7 @@ TEST(Block, MaskHidesNoSurface) {
     const Stage stage(random_scene(random, s, random.whole(2, 9)));
     for (int i = 0; i < 60; ++i) {
       const Block block =
-          stage.block(static_cast<std::size_t>(random.whole(0, static_cast<int>(stage.tree.cells().size()) - 1)));
+          stage.block(static_cast<std::size_t>(random.whole(0, static_cast<int>(stage.cells.size()) - 1)));
       all += 64;
       marked += static_cast<std::size_t>(__builtin_popcountll(block.mask()));
       for (int k = 0; k < 60; ++k) {

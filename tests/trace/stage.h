@@ -24,25 +24,27 @@ struct Stage {
   Correction correction;
   IsoCurve iso;
   PieceCutter cutter;
-  std::vector<Piece> pieces;
+  SourceTree sources;
   const BlockKernels& kernels;
   NearFar coarse, fine;
-  CellTree tree;
   mutable BlockArena arena;
+  CellTree tree;
+  std::vector<CellTree::Cell> cells;
 
   explicit Stage(BlendField f, std::string_view instruction_set = "")
       : field(std::move(f)),
         correction(correction_of(field)),
         iso(guarded(field, IsoCurve(correction, field.alpha))),
         cutter(field.degree, iso.critical_field()),
-        pieces(cutter.cut(field)),
+        sources(cutter.cut(field), field.degree),
         kernels(*block_kernels(instruction_set)),
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
         fine(field.degree, budget_of(TraceOptions{}.tolerance, field.degree), kernels),
-        tree(pieces, fine, iso, kernels, field.degree, cells_for(pieces.size())) {}
+        tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
+        cells(tree.cells()) {}
 
-  Block::Context context() const { return {pieces, tree, cutter, coarse, fine, iso, kernels, field.degree}; }
-  Block block(std::size_t cell) const { return Block(context(), tree.cells()[cell], arena); }
+  Block::Context context() const { return {sources.pieces(), tree, cutter, coarse, fine, iso, kernels, field.degree}; }
+  Block block(std::size_t cell) const { return Block(context(), cells[cell], arena); }
   double value(const Vec3d& p) const { return corrected_value(field, p); }
 };
 

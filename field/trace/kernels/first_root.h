@@ -11,11 +11,11 @@ inline float nonzero(float d) { return abs_of(d) > 1e-20F ? d : 1e-20F; }
 
 // The stretches of a ray in the patches, nearest first.
 struct PatchWalk {
-  alignas(32) float begin[patch_count], end[patch_count];
+  alignas(32) float begin[8], end[8];
   int count = 0;
-  int order[patch_count];
+  int order[8];
 
-  PatchWalk(const Patches& p, const LocalRay& ray, float t0, float t1) {
+  PatchWalk(const PatchNode& p, const LocalRay& ray, float t0, float t1) {
     V8 enter = V8{} + t0, leave = V8{} + t1, slope{}, height = load8(p.offset);
     for (int k = 0; k < 3; ++k) {
       const float inverse = 1 / nonzero(ray.direction[k]), o = ray.origin[k];
@@ -32,7 +32,7 @@ struct PatchWalk {
     enter = slope < 0.0F ? larger(enter, at) : enter;
     __builtin_memcpy(begin, &enter, sizeof begin);
     __builtin_memcpy(end, &leave, sizeof end);
-    for (int i = 0; i < patch_count; ++i)
+    for (int i = 0; i < 8; ++i)
       if (begin[i] <= end[i]) insert(i);
   }
 
@@ -84,8 +84,8 @@ inline PatchRay::Run next_run(const PatchRay& polynomial, float& from) {
   return run;
 }
 
-inline Root root_in_patch(const BlockView& block, int patch, const LocalRay& ray, float t0, float t1, bool any) {
-  const PatchRay polynomial(block, patch, ray, t0, t1);
+inline Root root_in_patch(const BlockView& block, const PatchNode& node, int octant, const LocalRay& ray, float t0, float t1, bool any) {
+  const PatchRay polynomial(block, node, octant, ray, t0, t1);
   Root all;
   all.evaluations = 1;
   constexpr int most_scans = 64;
@@ -112,29 +112,34 @@ inline Root root_in_patch(const BlockView& block, int patch, const LocalRay& ray
   return all;
 }
 
-Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
-  float front = query.t0;
+Root root_in_node(const BlockView& block, const PatchNode& node, const LocalRay& ray, float t0, float t1, bool any) {
+  const PatchWalk walk(node, ray, t0, t1);
   Root root;
-  if (query.from_surface) {  // too near for polynomials; one fine certificate leads away
-    Marcher march(block, block.fine, ray, query.t0, query.t1);
-    Search start(march, query.t0, query.t1);
-    start.record(march.sample(query.t0));
-    root.evaluations = march.evaluations;
-    if (start.missed()) return root;
-    front = start.front;
-  }
-  const PatchWalk walk(block.patches, ray, front, query.t1);
   for (int i = 0; i < walk.count; ++i) {
-    const int patch = walk.order[i];
-    const float t0 = walk.begin[patch], t1 = walk.end[patch];
-    const Root found = block.patches.by_sources >> patch & 1 ? root_by_sources(block, ray, t0, t1, query.any)
-                                                             : root_in_patch(block, patch, ray, t0, t1, query.any);
+    const int octant = walk.order[i];
+    const float begin = walk.begin[octant], end = walk.end[octant];
+    Root found;
+    if (node.child[octant] > 0) found = root_in_node(block, block.patches[node.child[octant]], ray, begin, end, any);
+    else if (node.polynomial[octant] == PatchNode::by_sources) found = root_by_sources(block, ray, begin, end, any);
+    else found = root_in_patch(block, node, octant, ray, begin, end, any);
     root.evaluations += found.evaluations;
     root.undecided = min_of(root.undecided, found.undecided);
     if (!found.hit) continue;
     root.hit = true;
     root.t = found.t;
-    return root;
+    break;
   }
+  return root;
+}
+
+Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
+  if (!query.from_surface) return root_in_node(block, *block.patches, ray, query.t0, query.t1, query.any);
+  // Too near for polynomials; one fine certificate leads away.
+  Marcher march(block, block.fine, ray, query.t0, query.t1);
+  Search start(march, query.t0, query.t1);
+  start.record(march.sample(query.t0));
+  Root root;
+  if (!start.missed()) root = root_in_node(block, *block.patches, ray, start.front, query.t1, query.any);
+  root.evaluations += march.evaluations;
   return root;
 }

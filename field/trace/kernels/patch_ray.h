@@ -18,17 +18,19 @@ struct PatchRay {
     float inside = 0;
   };
 
-  PatchRay(const BlockView& b, int patch, const LocalRay& local, float t0, float t1)
+  PatchRay(const BlockView& b, const PatchNode& node, int octant, const LocalRay& local, float t0, float t1)
       : block(b),
-        f_error(b.patches.f_error[patch]),
-        g_error(b.patches.g_error[patch]),
-        ray({.far = b.patches.polynomials + patch * far_floats}, in_patch(local, patch), t0, t1) {}
+        f_error(node.f_error[octant]),
+        g_error(node.g_error[octant]),
+        ray({.far = b.polynomials + static_cast<long>(node.polynomial[octant]) * far_floats},
+            in_octant(local, node, octant), t0, t1) {}
 
-  static LocalRay in_patch(const LocalRay& local, int patch) {
+  static LocalRay in_octant(const LocalRay& local, const PatchNode& node, int octant) {
     LocalRay r;
+    const float scale = 2 / node.half;
     for (int k = 0; k < 3; ++k) {
-      r.origin[k] = 2 * local.origin[k] + (patch >> k & 1 ? -1.0F : 1.0F);
-      r.direction[k] = 2 * local.direction[k];
+      r.origin[k] = scale * (local.origin[k] - node.center[k]) + (octant >> k & 1 ? -1.0F : 1.0F);
+      r.direction[k] = scale * local.direction[k];
     }
     return r;
   }

@@ -1,0 +1,26 @@
+#include "field/trace/tile.h"
+
+#include <utility>
+
+#include "field/trace/block.h"
+
+namespace marrow {
+
+Tile::Tile(const TilePlace& place, Surroundings coarse, const TileContent& content)
+    : place_(place),
+      content_(content),
+      coarse_(std::move(coarse)),
+      blocks_(new Lazy<Block>[static_cast<std::size_t>(std::popcount(content.cells))]),
+      children_(new Lazy<Tile>[static_cast<std::size_t>(std::popcount(content.tiles))]) {}
+
+Tile::~Tile() = default;
+
+std::size_t Tile::bytes() const {
+  std::size_t sum =
+      sizeof(Tile) + coarse_.near.capacity() * sizeof(SourceRef) +
+      static_cast<std::size_t>(std::popcount(content_.cells) + std::popcount(content_.tiles)) * sizeof(void*);
+  if (const Surroundings* fine = fine_.peek()) sum += sizeof(Surroundings) + fine->near.capacity() * sizeof(SourceRef);
+  return sum;
+}
+
+}  // namespace marrow
