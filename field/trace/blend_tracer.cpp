@@ -7,7 +7,7 @@
 #include "field/trace/block.h"
 #include "field/trace/cell_tree.h"
 #include "field/trace/precision.h"
-#include "field/trace/slot_walk.h"
+#include "field/trace/tile_boxes.h"
 
 namespace marrow {
 namespace {
@@ -59,6 +59,7 @@ struct BlendTracer::State {
   LatticeErrors lattice;
   mutable BlockArena arena;
   CellTree tree;
+  Block::Context context;
 
   State(BlendField f, const TraceOptions& options, const BlockKernels& k)
       : field(std::move(f)),
@@ -70,8 +71,8 @@ struct BlendTracer::State {
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
         fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
         lattice(field.degree),
-        tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())) {}
-  Block::Context context() const { return {sources.pieces(), tree, cutter, coarse, fine, lattice, iso, kernels, field.degree}; }
+        tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
+        context{sources.pieces(), tree, cutter, coarse, fine, lattice, iso, kernels, field.degree, arena} {}
 };
 
 Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const TraceOptions& options) {
@@ -96,84 +97,105 @@ const BlendField& BlendTracer::field() const { return state_->field; }
 
 const Block& BlendTracer::block(const Tile& tile, int slot) const {
   return tile.block(slot).get(
-      [&] { return std::make_unique<const Block>(state_->context(), CellTree::cell(tile, slot), state_->arena); });
+      [&] { return std::make_unique<const Block>(state_->context, CellTree::cell(tile, slot)); });
 }
 
-// A ray on its way through tiles.
-struct BlendTracer::Walk {
-  const Ray& ray;
-  Vec3d inverse;  // 1 / direction
-  bool any;
+const TileBoxes& BlendTracer::boxes(const Tile& tile) const {
+  return tile.boxes().get([&] {
+    return std::make_unique<const TileBoxes>(
+        make_tile_boxes(tile.place(), tile.content(), [&](int slot) { return block(tile, slot).box(); }));
+  });
+}
+
+namespace {
+
+// A ray in the coordinates of a cube, with t counted from its point nearest to the centre of the cube.
+struct RayInCube {
+  double t_near, half;
+  LocalRay local;
+
+  RayInCube(const Ray& ray, const Vec3d& center, double cube_half)
+      : t_near(dot(center - ray.origin, ray.direction)), half(cube_half) {
+    const double scale = 1 / half;
+    const Vec3d start = (ray.origin - center + ray.direction * t_near) * scale;
+    for (std::size_t i = 0; i < 3; ++i) {
+      local.origin[i] = static_cast<float>(start[i]);
+      local.direction[i] = static_cast<float>(ray.direction.vec()[i]);
+    }
+  }
+  float to_local(double t) const { return static_cast<float>((t - t_near) / half); }
+  double to_world(float t) const { return t_near + static_cast<double>(t) * half; }
 };
+
+}  // namespace
 
 std::optional<CellHit> BlendTracer::first_hit(std::size_t tile, const Ray& ray, bool any, CellLog& log) const {
   const Vec3d& direction = ray.direction;
-  const Walk walk{ray, {1 / direction.x, 1 / direction.y, 1 / direction.z}, any};
-  auto [enter, exit] = clip(tile_box(tile), ray, walk.inverse);
+  auto [enter, exit] = clip(tile_box(tile), ray, {1 / direction.x, 1 / direction.y, 1 / direction.z});
   log.enter = enter;
   if (any) exit = std::min(exit, ray.t_max);
   if (!(enter < exit)) return {};
-  const auto hit = hit_in(state_->tree.tile(tile), walk, enter, exit, log);
+  const auto hit = hit_in(state_->tree.tile(tile), ray, any, enter, exit, log);
   return hit && hit->t <= ray.t_max ? hit : std::nullopt;
 }
 
-// Slots in the ray's order; t is counted from the point of the ray nearest to the middle of the tile.
-std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Walk& walk, double enter, double exit,
+// Boxes in the ray's order. They overlap by roundings, so that one that begins before a hit may hold a nearer one.
+std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, bool any, double enter, double exit,
                                            CellLog& log) const {
-  const auto& [center, half, level, parent, own_slot] = tile.place();
-  const Ray& ray = walk.ray;
-  const double t_near = dot(center - ray.origin, ray.direction), scale = 1 / half;
-  const Vec3d start = (ray.origin - center + ray.direction * t_near) * scale;
-  SlotWalk slots(start, ray.direction, walk.inverse, (enter - t_near) * scale, (exit - t_near) * scale);
-  const TileContent& content = tile.content();
-  double begin = enter;
-  for (bool more = true; more;) {
-    const int octant = path_of(slots.slot()).outer;
-    const bool large = content.large_cells >> octant & 1;
-    const int slot = large ? slot_at({octant, 0}) : slots.slot();
-    double last = slots.end();
-    while ((more = slots.advance()) && large && path_of(slots.slot()).outer == octant) last = slots.end();
-    const double end = std::clamp(t_near + last * half, begin, exit);
-    if (!(begin < end)) continue;
-    std::optional<CellHit> hit;
-    if (content.cells >> slot & 1) hit = hit_in(block(tile, slot), walk, begin, end, log);
-    else if (content.tiles >> slot & 1) hit = hit_in(state_->tree.child(tile, slot), walk, begin, end, log);
-    if (hit) return hit;
-    begin = end;
+  const TileBoxes& in_tile = boxes(tile);
+  const RayInCube cube(ray, tile.place().center, tile.place().half);
+  std::optional<CellHit> best;
+  Stretches outer, inner;
+  state_->kernels.stretches(in_tile.nodes[0], cube.local, cube.to_local(enter), cube.to_local(exit), outer);
+  const auto visit = [&](int slot, float begin, float end) {
+    const double from = std::max(enter, cube.to_world(begin)), to = std::min(exit, cube.to_world(end));
+    const auto hit = tile.content().cells >> slot & 1 ? hit_in(block(tile, slot), ray, any, from, to, log)
+                                                      : hit_in(state_->tree.child(tile, slot), ray, any, from, to, log);
+    if (hit && (!best || hit->t < best->t)) best = hit;
+  };
+  const auto behind = [&](float begin) { return best && (any || cube.to_world(begin) > best->t); };
+  for (int i = 0; i < outer.count; ++i) {
+    const int o = outer.order[i];
+    if (behind(outer.begin[o])) break;
+    const PatchNode& root = in_tile.nodes[0];
+    if (root.child[o] == 0) {
+      visit(root.polynomial[o], outer.begin[o], outer.end[o]);
+      continue;
+    }
+    const PatchNode& node = in_tile.nodes[static_cast<std::size_t>(root.child[o])];
+    state_->kernels.stretches(node, cube.local, outer.begin[o], outer.end[o], inner);
+    for (int k = 0; k < inner.count; ++k) {
+      const int slot = inner.order[k];
+      if (behind(inner.begin[slot])) break;
+      visit(node.polynomial[slot], inner.begin[slot], inner.end[slot]);
+    }
   }
-  return {};
+  return best;
 }
 
-std::optional<CellHit> BlendTracer::hit_in(const Block& b, const Walk& in_world, double enter, double exit,
+std::optional<CellHit> BlendTracer::hit_in(const Block& b, const Ray& ray, bool any, double enter, double exit,
                                            CellLog& log) const {
-  const auto& [ray, inverse, any] = in_world;
-  const Vec3d& direction = ray.direction;
-  // Block coordinates, with t counted from the point of the ray nearest to the block's centre.
-  const double t_near = dot(b.center() - ray.origin, ray.direction), scale = 1 / b.half();
-  const Vec3d start = (ray.origin - b.center() + direction * t_near) * scale;
-  LocalRay local;
-  for (std::size_t i = 0; i < 3; ++i) {
-    local.origin[i] = static_cast<float>(start[i]);
-    local.direction[i] = static_cast<float>(direction[i]);
-  }
-  const auto world_t = [&](float t) { return t_near + static_cast<double>(t) * b.half(); };
-  const Root root = state_->kernels.first_root(b.view(), local,
-                                               {.t0 = static_cast<float>((enter - t_near) * scale),
-                                                .t1 = static_cast<float>((exit - t_near) * scale),
+  const RayInCube cube(ray, b.center(), b.half());
+  const Root root = state_->kernels.first_root(b.view(), cube.local,
+                                               {.t0 = cube.to_local(enter),
+                                                .t1 = cube.to_local(exit),
                                                 .any = any,
                                                 .from_surface = enter <= ray.t_min});
   log.evaluations += static_cast<std::uint32_t>(root.evaluations);
-  log.undecided = std::min(log.undecided, world_t(root.undecided));
+  log.undecided = std::min(log.undecided, cube.to_world(root.undecided));
   if (!root.hit) return {};
-  return CellHit{std::clamp(world_t(root.t), enter, exit)};
+  return CellHit{std::max(cube.to_world(root.t), ray.t_min), &b};
 }
 
 SurfacePoint BlendTracer::surface_at(std::size_t tile, const Vec3d& position) const {
   const CellTree::Cell cell = state_->tree.nearest_cell(tile, position);
-  const Block& b = block(*cell.tile, cell.slot);
+  return surface_at(block(*cell.tile, cell.slot), position);
+}
+
+SurfacePoint BlendTracer::surface_at(const Block& b, const Vec3d& position) const {
   const Vec3d x = (position - b.center()) / b.half();
   const float local[3] = {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)};
-  const PointField f = state_->kernels.point_field(b.view(), local);
+  const PointField f = state_->kernels.point_field(b.fine().level, state_->field.degree, local);
   const Vec3d gradient = vec(f.gradient), g = vec(f.si_gradient);
   const float* h = f.hessian;
   const auto bend = [&](const Vec3d& v) {  // H v
@@ -201,8 +223,10 @@ TraceStatistics BlendTracer::statistics() const {
       if (b == nullptr) continue;
       ++s.blocks;
       s.bytes += sizeof(Block);
-      s.sources += static_cast<std::size_t>((b->view().fine.curve_groups + b->view().fine.point_groups) * lanes);
-      s.largest_error = std::max(s.largest_error, b->f_error() + b->gradient_error() / state_->field.degree);
+      const Block::Fine* fine = b->fine_if_made();
+      if (fine == nullptr) continue;
+      s.sources += static_cast<std::size_t>((fine->level.curve_groups + fine->level.point_groups) * lanes);
+      s.largest_error = std::max(s.largest_error, fine->f_error + fine->gradient_error / state_->field.degree);
     }
   });
   return s;

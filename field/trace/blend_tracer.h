@@ -21,6 +21,7 @@
 namespace marrow {
 
 class Block;
+struct TileBoxes;
 class Tile;
 
 struct TraceOptions {
@@ -32,6 +33,7 @@ struct TraceOptions {
 
 struct CellHit {
   double t = 0;
+  const Block* block = nullptr;  ///< that it was found in
 };
 
 /// What a ray did in a tile, hit or not.
@@ -69,6 +71,8 @@ class BlendTracer {
   std::optional<CellHit> first_hit(std::size_t tile, const Ray&, bool any, CellLog&) const;
   /// Normal and starting point at a hit in this tile.
   SurfacePoint surface_at(std::size_t tile, const Vec3d& position) const;
+  /// The same in the block of a hit.
+  SurfacePoint surface_at(const Block&, const Vec3d& position) const;
 
   const BlendField& field() const;
   TraceStatistics statistics() const;
@@ -76,9 +80,9 @@ class BlendTracer {
  private:
   struct State;
   explicit BlendTracer(std::unique_ptr<State>);
-  struct Walk;
-  std::optional<CellHit> hit_in(const Tile&, const Walk&, double enter, double exit, CellLog&) const;
-  std::optional<CellHit> hit_in(const Block&, const Walk&, double enter, double exit, CellLog&) const;
+  std::optional<CellHit> hit_in(const Tile&, const Ray&, bool any, double enter, double exit, CellLog&) const;
+  std::optional<CellHit> hit_in(const Block&, const Ray&, bool any, double enter, double exit, CellLog&) const;
+  const TileBoxes& boxes(const Tile&) const;
   const Block& block(const Tile&, int slot) const;
   std::unique_ptr<State> state_;
 };

@@ -92,11 +92,11 @@ struct Level {
   }
 };
 
-Level make_level(const Block::Context& context, const NearFar& precision, std::span<const PieceIndex> near,
-                 const FarField& far, const Vec3d& center, double half) {
-  SourceEmitter emitter(context, precision, center, half);
-  for (const PieceIndex i : near) emitter.emit(context.pieces[i]);
-  Level level{std::move(emitter.curves), std::move(emitter.points), far};
+Level make_level(const Block::Context& context, const NearFar& precision, const Surroundings& around,
+                 const CellTree::Cell& cell) {
+  SourceEmitter emitter(context, precision, cell.center, cell.half);
+  for (const SourceRef ref : around.near) emitter.emit(context.pieces[ref.index()]);
+  Level level{std::move(emitter.curves), std::move(emitter.points), around.far};
   level.far.f_error += emitter.f_error;
   level.far.gradient_error += emitter.gradient_error;
   return level;
@@ -115,39 +115,40 @@ FieldLevel write_level(const Level& level, float* sources, float* far) {
 
 }  // namespace
 
-Block::Block(const Context& context, const CellTree::Cell& cell, BlockArena& arena)
-    : center_(cell.center), half_(cell.half) {
-  auto [sources, far_field] = context.tree.surroundings(cell);
-  std::vector<PieceIndex> near;
-  for (const SourceRef ref : sources) near.push_back(ref.index());
-  const Level fine = make_level(context, context.fine, near, far_field, center_, half_);
-  // What is far to the fine level is far to the coarse one too.
-  const auto nearest = context.coarse.split(context.pieces, near, center_, half_, far_field);
-  const Level coarse = make_level(context, context.coarse, nearest, far_field, center_, half_);
-  f_error_ = fine.far.f_error;
-  gradient_error_ = fine.far.gradient_error;
-
-  // The polynomials are compared with the fine level, so both errors count.
+Block::Block(const Context& context, const CellTree::Cell& cell) : context_(context), cell_(cell) {
+  const Level coarse = make_level(context, context.coarse, context.tree.coarse_surroundings(cell), cell);
   std::vector<SourceGroup> memory((coarse.source_floats() + far_floats) / floats_per_group + 1);
   float* const scratch = memory.front().x;
   FieldLevel level = write_level(coarse, scratch, scratch + coarse.source_floats());
-  level.f_error = static_cast<float>(1.0001 * (coarse.far.f_error + f_error_));
-  level.g_error = static_cast<float>(1.0001 * (coarse.far.gradient_error + gradient_error_));
+  level.f_error = static_cast<float>(1.0001 * coarse.far.f_error);
+  level.g_error = static_cast<float>(1.0001 * coarse.far.gradient_error);
   const Patches patches = make_patches(level, context.degree, context.iso, context.lattice, context.kernels);
-
-  constexpr std::size_t node_floats = sizeof(PatchNode) / sizeof(float);
-  const std::size_t all_node_floats = patches.nodes.size() * node_floats;
-  float* const nodes = arena.allocate(all_node_floats + patches.polynomials.size() + fine.source_floats() + far_floats);
-  std::memcpy(nodes, patches.nodes.data(), all_node_floats * sizeof(float));
-  float* const fine_sources = nodes + all_node_floats;
-  float* const fine_far = fine_sources + fine.source_floats();
-  float* const polynomials = fine_far + far_floats;
-  std::copy(patches.polynomials.begin(), patches.polynomials.end(), polynomials);
-  view_ = {.fine = write_level(fine, fine_sources, fine_far),
-           .patches = reinterpret_cast<const PatchNode*>(nodes),
-           .polynomials = polynomials,
+  view_ = {.make_fine = [](const void* owner) -> const FieldLevel& {
+             return static_cast<const Block*>(owner)->fine().level;
+           },
+           .owner = this,
            .degree = context.degree,
            .iso = context.iso.view()};
+  if (!(patches.lower[0] <= patches.upper[0])) return;
+  for (std::size_t k = 0; k < 3; ++k) {
+    box_.lower[k] = cell.center[k] + cell.half * static_cast<double>(patches.lower[k]);
+    box_.upper[k] = cell.center[k] + cell.half * static_cast<double>(patches.upper[k]);
+  }
+  const std::size_t node_floats = patches.nodes.size() * sizeof(PatchNode) / sizeof(float);
+  float* const nodes = context.arena.allocate(node_floats + patches.polynomials.size());
+  std::memcpy(nodes, patches.nodes.data(), node_floats * sizeof(float));
+  std::copy(patches.polynomials.begin(), patches.polynomials.end(), nodes + node_floats);
+  view_.patches = reinterpret_cast<const PatchNode*>(nodes);
+  view_.polynomials = nodes + node_floats;
+}
+
+const Block::Fine& Block::fine() const {
+  return fine_.get([&] {
+    const Level level = make_level(context_, context_.fine, context_.tree.surroundings(cell_), cell_);
+    float* const sources = context_.arena.allocate(level.source_floats() + far_floats);
+    return std::make_unique<const Fine>(
+        Fine{write_level(level, sources, sources + level.source_floats()), level.far.f_error, level.far.gradient_error});
+  });
 }
 
 }  // namespace marrow

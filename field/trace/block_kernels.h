@@ -44,11 +44,14 @@ struct alignas(64) PatchNode {
 /// What the kernels read of a block. The patches find where the surface can be; the fine level is the field that is
 /// rendered.
 struct BlockView {
-  FieldLevel fine;
   const PatchNode* patches = nullptr;  ///< the first divides the block
   const float* polynomials = nullptr;
+  const FieldLevel& (*make_fine)(const void* owner) = nullptr;  ///< made when it is first needed
+  const void* owner = nullptr;
   int degree = 4;
   IsoCurve::View iso;
+
+  const FieldLevel& fine() const { return make_fine(owner); }
 };
 
 struct LocalRay {
@@ -101,6 +104,13 @@ struct LatticeRaise {
   float surely_inside;  ///< from this f on all is inside
 };
 
+/// The stretches of a ray in the boxes of a node, nearest first.
+struct Stretches {
+  alignas(32) float begin[8], end[8];  ///< by octant
+  int count;
+  int order[8];  ///< octants that the ray meets
+};
+
 struct BlockKernels {
   struct Query {
     float t0, t1;
@@ -109,7 +119,8 @@ struct BlockKernels {
   };
   /// The first t in [t0, t1] where the corrected field reaches 1.
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
-  PointField (*point_field)(const BlockView&, const float point[3]);
+  PointField (*point_field)(const FieldLevel&, int degree, const float point[3]);
+  void (*stretches)(const PatchNode&, const LocalRay&, float t0, float t1, Stretches&);
   /// Of the field of a level, its errors included, over a ball.
   BallBounds (*ball_bounds)(const FieldLevel&, int degree, const float center[3], float radius);
   /// (f, Gx, Gy, Gz) at the nodes of the lattice (lattice.h) of a cube; room for lattice_stride nodes.

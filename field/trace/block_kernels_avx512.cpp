@@ -21,7 +21,7 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root, point_field, ball_bounds, lattice_values, lattice_marks, far_moments, octant_bounds};
+  static constexpr BlockKernels kernels{first_root, point_field, stretches, ball_bounds, lattice_values, lattice_marks, far_moments, octant_bounds};
   return kernels;
 }
 

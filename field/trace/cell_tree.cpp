@@ -150,8 +150,7 @@ std::unique_ptr<const Tile> CellTree::divide(const TilePlace& place) const {
                                                                                        << slot_at({i, k});
     }
   }
-  // Only smaller tiles need what the dividing has seen.
-  return std::make_unique<const Tile>(place, content.tiles != 0 ? whole.sources : Surroundings{}, content);
+  return std::make_unique<const Tile>(place, whole.sources, content);
 }
 
 const Surroundings& CellTree::fine_around(const Tile& tile) const {
@@ -170,13 +169,18 @@ const Surroundings& CellTree::fine_around(const Tile& tile) const {
   });
 }
 
-Surroundings CellTree::surroundings(const Cell& cell) const {
-  const Surroundings& around = fine_around(*cell.tile);
+Surroundings CellTree::within(const Surroundings& around, const NearFar& errors, const Cell& cell) const {
   const SlotPath path = path_of(cell.slot);
   Surroundings s{.near = {}, .far = around.far.of_child(path.outer)};
   if (!cell.large) s.far = s.far.of_child(path.inner);
-  s.near = fine_.split(sources_, around.near, cell.center, cell.half, -1, s.far);
+  s.near = errors.split(sources_, around.near, cell.center, cell.half, -1, s.far);
   return s;
+}
+
+Surroundings CellTree::surroundings(const Cell& cell) const { return within(fine_around(*cell.tile), fine_, cell); }
+
+Surroundings CellTree::coarse_surroundings(const Cell& cell) const {
+  return within(cell.tile->coarse(), coarse_, cell);
 }
 
 void CellTree::for_each_tile(bool divide, const std::function<void(const Tile&)>& visit) const {

@@ -55,6 +55,8 @@ class CellTree {
 
   /// The sources around a cell, to the errors of `fine`; all near ones are pieces.
   Surroundings surroundings(const Cell&) const;
+  /// The same to the errors of `coarse`.
+  Surroundings coarse_surroundings(const Cell&) const;
 
   /// Of all tiles made so far, or, when `divide`, of all there are.
   void for_each_tile(bool divide, const std::function<void(const Tile&)>&) const;
@@ -72,6 +74,7 @@ class CellTree {
   std::unique_ptr<const Tile> divide(const TilePlace&) const;
   Surroundings coarse_around(const TilePlace&) const;
   const Surroundings& fine_around(const Tile&) const;
+  Surroundings within(const Surroundings& around, const NearFar& errors, const Cell&) const;
 
   const SourceTree& sources_;
   const NearFar& coarse_;

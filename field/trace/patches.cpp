@@ -23,8 +23,8 @@ constexpr float rounding = 5e-5F;
 
 // An octant is divided when its polynomial could be off by more than this in C, down to `deepest` divisions of a block.
 // An error of `useless` leaves nothing to be told.
-constexpr float accurate_enough = 0.06F, useless = 0.3F;
-constexpr int deepest = 3;
+constexpr float accurate_enough = 0.15F, useless = 0.3F;
+constexpr int deepest = 2;
 
 struct Errors {
   float field = 0, gradient = 0;
@@ -213,7 +213,9 @@ class Builder {
 Patches make_patches(const FieldLevel& level, int degree, const IsoCurve& iso, const LatticeErrors& tables,
                      const BlockKernels& kernels) {
   Builder builder(level, degree, iso, tables, kernels);
-  builder.divide({.center = {0, 0, 0}, .half = 1}, 1);
+  const Fit fit = builder.divide({.center = {0, 0, 0}, .half = 1}, 1);
+  std::copy_n(fit.lower, 3, builder.out.lower);
+  std::copy_n(fit.upper, 3, builder.out.upper);
   return std::move(builder.out);
 }
 

@@ -22,9 +22,10 @@ struct LatticeErrors {
 struct Patches {
   std::vector<PatchNode> nodes;  ///< the first divides the block
   std::vector<float> polynomials;
+  float lower[3], upper[3];  ///< of a box around all surface, when there is any
 };
 
-/// `level` is the field, in block coordinates; it must outlive nothing.
+/// `level` is the field, in block coordinates; its errors are against the exact field.
 Patches make_patches(const FieldLevel& level, int degree, const IsoCurve&, const LatticeErrors&, const BlockKernels&);
 
 }  // namespace marrow

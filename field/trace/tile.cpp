@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "field/trace/block.h"
+#include "field/trace/tile_boxes.h"
 
 namespace marrow {
 

@@ -53,12 +53,13 @@ std::optional<double> FieldSolid::hit(std::size_t element, const Ray& ray, bool 
   const auto found = tracer_->first_hit(element, local, any, cell);
   log = {cell.enter / stretch, cell.undecided / stretch, cell.evaluations};
   if (!found) return {};
+  log.place = found->block;
   return found->t / stretch;
 }
 
-void FieldSolid::describe(std::size_t element, const Ray&, SurfaceHit& hit) const {
+void FieldSolid::describe(std::size_t, const void* place, const Ray&, SurfaceHit& hit) const {
   const Vec3d p = in_world_ ? hit.position : local_from_world_.point(hit.position);
-  const SurfacePoint surface = tracer_->surface_at(element, p);
+  const SurfacePoint surface = tracer_->surface_at(*static_cast<const Block*>(place), p);
   hit.normal = in_world_ ? surface.normal : normalize(local_from_world_.transposed(surface.normal));
   hit.outside = in_world_ ? surface.outside : world_from_local_.point(surface.outside);
   const MaterialId own = strongest_material(tracer_->field(), p);

@@ -18,7 +18,7 @@ class FieldSolid final : public Solid {
   Box3 element_box(std::size_t) const override;
   Box3 extent() const override;
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
-  void describe(std::size_t, const Ray&, SurfaceHit&) const override;
+  void describe(std::size_t, const void* place, const Ray&, SurfaceHit&) const override;
   std::size_t primitive_count() const override { return tracer_->field().size(); }
   std::size_t bytes() const override { return tracer_->statistics().bytes; }
   TraceStatistics statistics() const { return tracer_->statistics(); }

@@ -9,44 +9,37 @@ inline V8 larger(V8 a, V8 b) { return a > b ? a : b; }
 // Directions that are 0 in an axis become very small: then no product is 0 times infinity.
 inline float nonzero(float d) { return abs_of(d) > 1e-20F ? d : 1e-20F; }
 
-// The stretches of a ray in the patches, nearest first.
-struct PatchWalk {
-  alignas(32) float begin[8], end[8];
-  int count = 0;
-  int order[8];
+inline void insert(Stretches& s, int octant) {
+  int k = s.count++;
+  for (; k > 0 && s.begin[s.order[k - 1]] > s.begin[octant]; --k) s.order[k] = s.order[k - 1];
+  s.order[k] = octant;
+}
 
-  PatchWalk(const PatchNode& p, const LocalRay& ray, float t0, float t1) {
-    V8 enter = V8{} + t0, leave = V8{} + t1, slope{}, height = load8(p.offset);
-    for (int k = 0; k < 3; ++k) {
-      const float inverse = 1 / nonzero(ray.direction[k]), o = ray.origin[k];
-      const V8 a = (load8(p.lower[k]) - o) * inverse, b = (load8(p.upper[k]) - o) * inverse;
-      enter = larger(enter, smaller(a, b));
-      leave = smaller(leave, larger(a, b));
-      slope += load8(p.normal[k]) * ray.direction[k];
-      height -= load8(p.normal[k]) * o;
-    }
-    // normal . (o + t d) <= offset: from this t on, or up to it
-    const V8 tiny = V8{} + 1e-20F;
-    const V8 rising = slope >= 0.0F ? larger(slope, tiny) : slope, at = height / rising;
-    leave = slope >= 0.0F ? smaller(leave, at) : leave;
-    enter = slope < 0.0F ? larger(enter, at) : enter;
-    __builtin_memcpy(begin, &enter, sizeof begin);
-    __builtin_memcpy(end, &leave, sizeof end);
-    for (int i = 0; i < 8; ++i)
-      if (begin[i] <= end[i]) insert(i);
+void stretches(const PatchNode& node, const LocalRay& ray, float t0, float t1, Stretches& out) {
+  V8 enter = V8{} + t0, leave = V8{} + t1, slope{}, height = load8(node.offset);
+  for (int k = 0; k < 3; ++k) {
+    const float inverse = 1 / nonzero(ray.direction[k]), o = ray.origin[k];
+    const V8 a = (load8(node.lower[k]) - o) * inverse, b = (load8(node.upper[k]) - o) * inverse;
+    enter = larger(enter, smaller(a, b));
+    leave = smaller(leave, larger(a, b));
+    slope += load8(node.normal[k]) * ray.direction[k];
+    height -= load8(node.normal[k]) * o;
   }
-
- private:
-  void insert(int patch) {
-    int k = count++;
-    for (; k > 0 && begin[order[k - 1]] > begin[patch]; --k) order[k] = order[k - 1];
-    order[k] = patch;
-  }
-};
+  // normal . (o + t d) <= offset: from this t on, or up to it
+  const V8 tiny = V8{} + 1e-20F;
+  const V8 rising = slope >= 0.0F ? larger(slope, tiny) : slope, at = height / rising;
+  leave = slope >= 0.0F ? smaller(leave, at) : leave;
+  enter = slope < 0.0F ? larger(enter, at) : enter;
+  __builtin_memcpy(out.begin, &enter, sizeof out.begin);
+  __builtin_memcpy(out.end, &leave, sizeof out.end);
+  out.count = 0;
+  for (int i = 0; i < 8; ++i)
+    if (out.begin[i] <= out.end[i]) insert(out, i);
+}
 
 // Where fine samples decide between t0, up to which all is certified outside, and t1.
 inline Root decide_between(const BlockView& block, const LocalRay& ray, float t0, float t1, float guess, bool any) {
-  Marcher fine(block, block.fine, ray, t0, t1);
+  Marcher fine(block, block.fine(), ray, t0, t1);
   Search close(fine, t0, t1);
   Root root = decide(close, min_of(max_of(guess, t0), t1), any);
   root.evaluations = fine.evaluations;
@@ -55,7 +48,7 @@ inline Root decide_between(const BlockView& block, const LocalRay& ray, float t0
 
 // Without a useful polynomial.
 inline Root root_by_sources(const BlockView& block, const LocalRay& ray, float t0, float t1, bool any) {
-  Marcher march(block, block.fine, ray, t0, t1);
+  Marcher march(block, block.fine(), ray, t0, t1);
   Search search(march, t0, t1);
   Root root;
   float guess = t0;
@@ -113,10 +106,12 @@ inline Root root_in_patch(const BlockView& block, const PatchNode& node, int oct
 }
 
 Root root_in_node(const BlockView& block, const PatchNode& node, const LocalRay& ray, float t0, float t1, bool any) {
-  const PatchWalk walk(node, ray, t0, t1);
+  Stretches walk;
+  stretches(node, ray, t0, t1, walk);
   Root root;
   for (int i = 0; i < walk.count; ++i) {
     const int octant = walk.order[i];
+    if (root.hit && walk.begin[octant] > root.t) break;
     const float begin = walk.begin[octant], end = walk.end[octant];
     Root found;
     if (node.child[octant] > 0) found = root_in_node(block, block.patches[node.child[octant]], ray, begin, end, any);
@@ -124,10 +119,10 @@ Root root_in_node(const BlockView& block, const PatchNode& node, const LocalRay&
     else found = root_in_patch(block, node, octant, ray, begin, end, any);
     root.evaluations += found.evaluations;
     root.undecided = min_of(root.undecided, found.undecided);
-    if (!found.hit) continue;
+    if (!found.hit || (root.hit && root.t <= found.t)) continue;
     root.hit = true;
     root.t = found.t;
-    break;
+    if (any) break;
   }
   return root;
 }
@@ -135,7 +130,7 @@ Root root_in_node(const BlockView& block, const PatchNode& node, const LocalRay&
 Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
   if (!query.from_surface) return root_in_node(block, *block.patches, ray, query.t0, query.t1, query.any);
   // Too near for polynomials; one fine certificate leads away.
-  Marcher march(block, block.fine, ray, query.t0, query.t1);
+  Marcher march(block, block.fine(), ray, query.t0, query.t1);
   Search start(march, query.t0, query.t1);
   start.record(march.sample(query.t0));
   Root root;
