@@ -40,79 +40,73 @@ struct PatchRay {
   // its ends plus what second derivatives allow (convexity bounds |G| of the chord).
   Run scan(float from, float to) const {
     const float width = (to - from) * (1.0F / last);
-    Samples at(*this, from, width);
-    const float bend = 0.25F * width * width;
+    V16 x, y;
+    sample(from, width, x, y);
     // The curvatures are per unit t; s is t over the half length.
-    const float half2 = 1 / (ray.inverse_half * ray.inverse_half);
-    const float x_raise = bend * ray.f_curvature * half2 + f_error, y_raise = bend * ray.g_curvature * half2 + g_error;
+    const float bend = 0.25F * width * width / (ray.inverse_half * ray.inverse_half);
+    const float x_raise = bend * ray.f_curvature + f_error, y_raise = bend * ray.g_curvature + g_error;
+    const V16 x_next = next(x), y_next = next(y);
+    const V16 x_up = (larger(x, x_next) + x_raise) * (1 + rounding), y_up = (larger(y, y_next) + y_raise) * (1 + rounding);
+    V16 margin = margin_at(block.iso, x_up, y_up);
+    if (block.iso.two_sided) {
+      const V16 x_low = larger(V16{}, (x < x_next ? x : x_next) - x_raise);
+      const V16 other = margin_at(block.iso, x_low, y_up);
+      margin = margin < other ? margin : other;
+    }
+    alignas(64) float sure[lanes];  // outside between this sample and the next, where positive
+    __builtin_memcpy(sure, &margin, sizeof sure);
     Run run;
     int first = 0;
-    while (first < last && at.outside(block.iso, first, x_raise, y_raise)) ++first;
+    while (first < last && sure[first] > 0) ++first;
     if (first == last) return run;
     int stop = first + 1;
-    while (stop < last && !at.outside(block.iso, stop, x_raise, y_raise)) ++stop;
+    while (stop < last && !(sure[stop] > 0)) ++stop;
     run.found = true;
     run.begin = first == 0 ? from : from + width * static_cast<float>(first);
     run.end = stop == last ? to : from + width * static_cast<float>(stop);
-    locate(at, first, stop, from, width, run);
+    locate(x, y, first, stop, from, width, run);
     return run;
   }
 
  private:
-  struct Samples {
-    alignas(64) float x[lanes], y[lanes];
-
-    Samples(const PatchRay& p, float from, float width) {
-      V16 s;
-      for (int i = 0; i < lanes; ++i) s[i] = static_cast<float>(i);
-      s = from + width * s;
-      const V4(&c)[5] = p.ray.c;
-      V16 v[4];
-      for (int k = 0; k < 4; ++k) v[k] = c[0][k] + s * (c[1][k] + s * (c[2][k] + s * (c[3][k] + s * c[4][k])));
-      const V16 length = root_of(v[1] * v[1] + v[2] * v[2] + v[3] * v[3]);
-      __builtin_memcpy(x, &v[0], sizeof x);
-      __builtin_memcpy(y, &length, sizeof y);
-    }
-    bool outside(const IsoCurve::View& iso, int i, float x_raise, float y_raise) const {
-      const float x_up = (max_of(x[i], x[i + 1]) + x_raise) * (1 + rounding);
-      const float y_up = (max_of(y[i], y[i + 1]) + y_raise) * (1 + rounding);
-      if (!(margin_at(iso, x_up, y_up) > 0)) return false;
-      return !iso.two_sided || margin_at(iso, max_of(0, min_of(x[i], x[i + 1]) - x_raise), y_up) > 0;
-    }
-  };
+  void sample(float from, float width, V16& x, V16& y) const {
+    const V16 count{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const V16 s = from + width * count;
+    const V4(&c)[5] = ray.c;
+    V16 v[4];
+    for (int k = 0; k < 4; ++k) v[k] = c[0][k] + s * (c[1][k] + s * (c[2][k] + s * (c[3][k] + s * c[4][k])));
+    x = v[0];
+    y = root_of(v[1] * v[1] + v[2] * v[2] + v[3] * v[3]);
+  }
+  static V16 next(V16 v) {
+    return __builtin_shufflevector(v, v, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 15);
+  }
 
   static float nominal(const IsoCurve::View& iso, float x, float y) {
     return curve_at(iso, turned_u(iso, x, y)).value - turned_v(iso, x, y);
   }
 
-  bool surely_inside(float x, float y) const {
-    if (block.iso.two_sided) return false;
-    const float x_low = (x - f_error) * (1 - rounding), y_low = (y - g_error) * (1 - rounding);
-    return x_low > 0 && y_low > 0 && nominal(block.iso, x_low, y_low) < 0;
-  }
-
-  void locate(const Samples& at, int first, int stop, float from, float width, Run& run) const {
-    float before = 0, least = infinity;
-    for (int i = first; i <= stop; ++i) {
-      const float r = nominal(block.iso, at.x[i], at.y[i]), s = from + width * static_cast<float>(i);
-      if (r <= 0) {
-        run.crosses = true;
-        run.guess = i == first ? s : refined(s - width, before, s, r);
-        break;
-      }
-      if (r < least) {
-        least = r;
-        run.guess = s;
-      }
-      before = r;
-    }
+  // Where the polynomials first reach 1 among the samples of a run, and where the field surely does.
+  void locate(V16 x, V16 y, int first, int stop, float from, float width, Run& run) const {
+    alignas(64) float above[lanes], surely[lanes];
+    const V16 here = nominal_at(block.iso, x, y);
+    __builtin_memcpy(above, &here, sizeof above);
+    int least = first;
+    for (int i = first; i <= stop && above[least] > 0; ++i)
+      if (above[i] < above[least] || above[i] <= 0) least = i;
+    run.crosses = above[least] <= 0;
+    run.guess = from + width * static_cast<float>(least);
     if (!run.crosses) return;
-    for (int i = first; i <= stop; ++i)
-      if (surely_inside(at.x[i], at.y[i])) {
-        run.surely = true;
-        run.inside = from + width * static_cast<float>(i);
-        return;
-      }
+    if (least > first) run.guess = refined(run.guess - width, above[least - 1], run.guess, above[least]);
+    if (block.iso.two_sided) return;
+    const V16 x_low = (x - f_error) * (1 - rounding), y_low = (y - g_error) * (1 - rounding);
+    const V16 deep = nominal_at(block.iso, x_low, y_low);
+    const V16 proved = x_low > 0.0F ? (y_low > 0.0F ? deep : splat(1)) : splat(1);
+    __builtin_memcpy(surely, &proved, sizeof surely);
+    for (int i = first; i <= stop && !run.surely; ++i) {
+      run.surely = surely[i] < 0;
+      run.inside = from + width * static_cast<float>(i);
+    }
   }
 
   // Regula falsi, and the parabola through its point.
