@@ -56,7 +56,7 @@ struct BlendTracer::State {
   SourceTree sources;
   const BlockKernels& kernels;
   NearFar coarse, fine;
-  LatticeErrors lattice;
+  LatticeError lattice[2];  // of curves, and of points
   mutable BlockArena arena;
   CellTree tree;
   Block::Context context;
@@ -70,7 +70,7 @@ struct BlendTracer::State {
         kernels(k),
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
         fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
-        lattice(field.degree),
+        lattice{lattice_error(field.degree), lattice_error(field.degree - 1)},
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
         context{sources.pieces(), tree, cutter, coarse, fine, lattice, iso, kernels, field.degree, arena} {}
 };
@@ -98,13 +98,6 @@ const BlendField& BlendTracer::field() const { return state_->field; }
 const Block& BlendTracer::block(const Tile& tile, int slot) const {
   return tile.block(slot).get(
       [&] { return std::make_unique<const Block>(state_->context, CellTree::cell(tile, slot)); });
-}
-
-const TileBoxes& BlendTracer::boxes(const Tile& tile) const {
-  return tile.boxes().get([&] {
-    return std::make_unique<const TileBoxes>(
-        make_tile_boxes(tile.place(), tile.content(), [&](int slot) { return block(tile, slot).box(); }));
-  });
 }
 
 namespace {
@@ -142,32 +135,32 @@ std::optional<CellHit> BlendTracer::first_hit(std::size_t tile, const Ray& ray, 
 // Boxes in the ray's order. They overlap by roundings, so that one that begins before a hit may hold a nearer one.
 std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, bool any, double enter, double exit,
                                            CellLog& log) const {
-  const TileBoxes& in_tile = boxes(tile);
+  const TileBoxes& boxes = tile.boxes();
+  const TileContent& content = tile.content();
   const RayInCube cube(ray, tile.place().center, tile.place().half);
   std::optional<CellHit> best;
-  Stretches outer, inner;
-  state_->kernels.stretches(in_tile.nodes[0], cube.local, cube.to_local(enter), cube.to_local(exit), outer);
   const auto visit = [&](int slot, float begin, float end) {
     const double from = std::max(enter, cube.to_world(begin)), to = std::min(exit, cube.to_world(end));
-    const auto hit = tile.content().cells >> slot & 1 ? hit_in(block(tile, slot), ray, any, from, to, log)
-                                                      : hit_in(state_->tree.child(tile, slot), ray, any, from, to, log);
+    const auto hit = content.cells >> slot & 1 ? hit_in(block(tile, slot), ray, any, from, to, log)
+                                               : hit_in(state_->tree.child(tile, slot), ray, any, from, to, log);
     if (hit && (!best || hit->t < best->t)) best = hit;
   };
   const auto behind = [&](float begin) { return best && (any || cube.to_world(begin) > best->t); };
+  const auto cell_box = [&](int slot) { return block(tile, slot).box(); };
+  Stretches outer, inner;
+  state_->kernels.stretches(boxes.octants(), cube.local, cube.to_local(enter), cube.to_local(exit), outer);
   for (int i = 0; i < outer.count; ++i) {
-    const int o = outer.order[i];
-    if (behind(outer.begin[o])) break;
-    const PatchNode& root = in_tile.nodes[0];
-    if (root.child[o] == 0) {
-      visit(root.polynomial[o], outer.begin[o], outer.end[o]);
+    const int octant = outer.order[i];
+    if (behind(outer.begin[octant])) break;
+    if (content.large_cells >> octant & 1) {
+      visit(slot_at({octant, 0}), outer.begin[octant], outer.end[octant]);
       continue;
     }
-    const PatchNode& node = in_tile.nodes[static_cast<std::size_t>(root.child[o])];
-    state_->kernels.stretches(node, cube.local, outer.begin[o], outer.end[o], inner);
+    state_->kernels.stretches(boxes.slots(octant, cell_box), cube.local, outer.begin[octant], outer.end[octant], inner);
     for (int k = 0; k < inner.count; ++k) {
       const int slot = inner.order[k];
       if (behind(inner.begin[slot])) break;
-      visit(node.polynomial[slot], inner.begin[slot], inner.end[slot]);
+      visit(slot_at({octant, slot}), inner.begin[slot], inner.end[slot]);
     }
   }
   return best;

@@ -21,7 +21,6 @@
 namespace marrow {
 
 class Block;
-struct TileBoxes;
 class Tile;
 
 struct TraceOptions {
@@ -82,7 +81,6 @@ class BlendTracer {
   explicit BlendTracer(std::unique_ptr<State>);
   std::optional<CellHit> hit_in(const Tile&, const Ray&, bool any, double enter, double exit, CellLog&) const;
   std::optional<CellHit> hit_in(const Block&, const Ray&, bool any, double enter, double exit, CellLog&) const;
-  const TileBoxes& boxes(const Tile&) const;
   const Block& block(const Tile&, int slot) const;
   std::unique_ptr<State> state_;
 };

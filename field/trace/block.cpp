@@ -115,31 +115,29 @@ FieldLevel write_level(const Level& level, float* sources, float* far) {
 
 }  // namespace
 
-Block::Block(const Context& context, const CellTree::Cell& cell) : context_(context), cell_(cell) {
+Block::Block(const Context& context, const CellTree::Cell& cell) : context_(context),
+      cell_(cell),
+      source_{coarse_, context.degree, context.iso, context.lattice, context.kernels} {
   const Level coarse = make_level(context, context.coarse, context.tree.coarse_surroundings(cell), cell);
-  std::vector<SourceGroup> memory((coarse.source_floats() + far_floats) / floats_per_group + 1);
-  float* const scratch = memory.front().x;
-  FieldLevel level = write_level(coarse, scratch, scratch + coarse.source_floats());
-  level.f_error = static_cast<float>(1.0001 * coarse.far.f_error);
-  level.g_error = static_cast<float>(1.0001 * coarse.far.gradient_error);
-  const Patches patches = make_patches(level, context.degree, context.iso, context.lattice, context.kernels);
-  view_ = {.make_fine = [](const void* owner) -> const FieldLevel& {
+  float* const sources = context.arena.allocate(coarse.source_floats() + far_floats);
+  coarse_ = write_level(coarse, sources, sources + coarse.source_floats());
+  coarse_.f_error = static_cast<float>(1.0001 * coarse.far.f_error);
+  coarse_.g_error = static_cast<float>(1.0001 * coarse.far.gradient_error);
+  view_ = {.octants = nullptr,
+           .coarse = coarse_,
+           .make_fine = [](const void* owner) -> const FieldLevel& {
              return static_cast<const Block*>(owner)->fine().level;
            },
            .owner = this,
            .degree = context.degree,
            .iso = context.iso.view()};
-  if (!(patches.lower[0] <= patches.upper[0])) return;
-  for (std::size_t k = 0; k < 3; ++k) {
-    box_.lower[k] = cell.center[k] + cell.half * static_cast<double>(patches.lower[k]);
-    box_.upper[k] = cell.center[k] + cell.half * static_cast<double>(patches.upper[k]);
+  octants_.emplace(source_, Cube{.center = {0, 0, 0}, .half = 1}, 1);
+  view_.octants = &*octants_;
+  for (int i = 0; i < 8; ++i) {
+    if (!(octants_->boxes.present >> i & 1)) continue;
+    const Vec3d center = octant_center(cell.center, cell.half, i), h{cell.half / 2, cell.half / 2, cell.half / 2};
+    box_.include({center - h, center + h});
   }
-  const std::size_t node_floats = patches.nodes.size() * sizeof(PatchNode) / sizeof(float);
-  float* const nodes = context.arena.allocate(node_floats + patches.polynomials.size());
-  std::memcpy(nodes, patches.nodes.data(), node_floats * sizeof(float));
-  std::copy(patches.polynomials.begin(), patches.polynomials.end(), nodes + node_floats);
-  view_.patches = reinterpret_cast<const PatchNode*>(nodes);
-  view_.polynomials = nodes + node_floats;
 }
 
 const Block::Fine& Block::fine() const {

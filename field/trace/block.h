@@ -1,6 +1,7 @@
 // What tracing needs of one cell: near sources, the far field, and polynomials that tell where surface can be.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "field/math/box3.h"
@@ -22,7 +23,7 @@ class Block {
     const PieceCutter& cutter;
     const NearFar& coarse;  ///< errors of the sources that polynomials are made from
     const NearFar& fine;    ///< errors of the fine level
-    const LatticeErrors& lattice;
+    const LatticeError (&lattice)[2];  ///< of curves, and of points
     const IsoCurve& iso;
     const BlockKernels& kernels;
     int degree;
@@ -51,6 +52,9 @@ class Block {
   const Context& context_;
   CellTree::Cell cell_;
   Box3 box_;
+  FieldLevel coarse_;
+  PatchSource source_;
+  std::optional<OctantPatches> octants_;
   BlockView view_;
   Lazy<Fine> fine_;
 };

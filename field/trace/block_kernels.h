@@ -28,24 +28,35 @@ struct FieldLevel {
   float f_error = 0, g_error = 0;  ///< added to f and |G| wherever "outside" is to be proved
 };
 
-/// Eight octants of a cube of a block, x the lowest bit: where in them surface can be, and the field there as
-/// polynomials with certified errors, or as octants again. Surface in octant i lies in its box and where
-/// normal . x <= offset; an offset of -1e30 says there is none. Boxes and planes in block coordinates.
-struct alignas(64) PatchNode {
-  static constexpr int by_sources = -1;  ///< no useful polynomial: the sources must be asked
+/// Boxes in the eight octants of a cube, x the lowest bit, in coordinates of a block or a tile.
+struct alignas(32) OctantBoxes {
   float lower[3][8], upper[3][8];
-  float normal[3][8], offset[8];
-  float f_error[8], g_error[8];  ///< of the polynomials against the exact field, over the octant
-  int polynomial[8];             ///< in units of far_floats, in coordinates of the octant; or by_sources
-  int child[8];                  ///< node that divides the octant further; 0 for none
-  float center[3], half;
+  unsigned present = 0;  ///< a bit for each octant that has a box
 };
 
-/// What the kernels read of a block. The patches find where the surface can be; the fine level is the field that is
-/// rendered.
+/// A cube of a block in which surface may be: a polynomial of the whole field with certified errors.
+struct Patch {
+  enum class Kind { Empty, Smooth, Sources, Divided };
+  Kind kind = Kind::Empty;  ///< Sources: no useful polynomial, the coarse level must be asked
+  /// Surface is only in this box and where normal . x <= offset, in block coordinates.
+  float lower[3], upper[3], normal[3], offset;
+  float center[3], half;
+  float f_error, g_error;  ///< of the polynomial against the exact field, over the cube
+  float polynomial[far_floats];
+  const struct Octants* octants = nullptr;  ///< of Divided
+};
+
+/// The octants of a block or of a patch; those present are made when the first ray comes.
+struct Octants {
+  OctantBoxes boxes;
+  const Patch& (*patch)(const Octants&, int octant);
+};
+
+/// What the kernels read of a block. The patches, and where they fail the coarse level, find where the surface can be;
+/// the fine level is the field that is rendered.
 struct BlockView {
-  const PatchNode* patches = nullptr;  ///< the first divides the block
-  const float* polynomials = nullptr;
+  const Octants* octants = nullptr;
+  FieldLevel coarse;
   const FieldLevel& (*make_fine)(const void* owner) = nullptr;  ///< made when it is first needed
   const void* owner = nullptr;
   int degree = 4;
@@ -91,9 +102,19 @@ struct OctantBounds {
   bool touches = false;                   ///< a piece comes into the ball
 };
 
-struct BallBounds {
+/// The error of a lattice's polynomial for one source at the distance d from the centre of a cube, both over its half
+/// side: at most field * (d^2 - offset)^-((m+5)/2) in f and gradient * tau * (d^2 - offset)^-((m+6)/2) in |G|, from
+/// d^2 = nearest on. See lattice.h.
+struct LatticeError {
+  static constexpr float nearest = 9, offset = 2.6F;
+  float field, gradient;
+};
+
+/// Of a field over a cube.
+struct CubeBounds {
   float f_high = 0, g_high = 0, f_low = 0;  ///< the upper ones when nothing touches
-  bool touches = false;                     ///< a source comes into the ball
+  bool touches = false;                     ///< a source comes into the ball around the cube
+  float f_error = 0, g_error = 0;           ///< of the polynomial through its lattice
 };
 
 inline constexpr int lattice_stride = 128;  ///< nodes of a lattice in whole vectors
@@ -104,7 +125,7 @@ struct LatticeRaise {
   float surely_inside;  ///< from this f on all is inside
 };
 
-/// The stretches of a ray in the boxes of a node, nearest first.
+/// The stretches of a ray in boxes, nearest first.
 struct Stretches {
   alignas(32) float begin[8], end[8];  ///< by octant
   int count;
@@ -120,9 +141,10 @@ struct BlockKernels {
   /// The first t in [t0, t1] where the corrected field reaches 1.
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
   PointField (*point_field)(const FieldLevel&, int degree, const float point[3]);
-  void (*stretches)(const PatchNode&, const LocalRay&, float t0, float t1, Stretches&);
-  /// Of the field of a level, its errors included, over a ball.
-  BallBounds (*ball_bounds)(const FieldLevel&, int degree, const float center[3], float radius);
+  void (*stretches)(const OctantBoxes&, const LocalRay&, float t0, float t1, Stretches&);
+  /// `errors`: of curves, and of points.
+  CubeBounds (*cube_bounds)(const FieldLevel&, int degree, const LatticeError errors[2], const float center[3],
+                            float half);
   /// (f, Gx, Gy, Gz) at the nodes of the lattice (lattice.h) of a cube; room for lattice_stride nodes.
   void (*lattice_values)(const FieldLevel&, int degree, const float center[3], float half, float* values);
   /// Bit i + 4 j + 16 k for each cell of the lattice that may hold surface, from the values at its nodes.

@@ -15,13 +15,13 @@ namespace {
 #include "field/trace/kernels/first_root.h"
 #include "field/trace/kernels/points.h"
 #include "field/trace/kernels/lattice.h"
-#include "field/trace/kernels/ball.h"
+#include "field/trace/kernels/cube.h"
 #include "field/trace/kernels/moments.h"
 // clang-format on
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root, point_field, stretches, ball_bounds, lattice_values, lattice_marks, far_moments, octant_bounds};
+  static constexpr BlockKernels kernels{first_root, point_field, stretches, cube_bounds, lattice_values, lattice_marks, far_moments, octant_bounds};
   return kernels;
 }
 

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <limits>
 
 #include "field/math/elementary.h"
 #include "field/trace/far_field.h"
@@ -109,7 +106,7 @@ Four polynomial_at(const float* c, float x, float y, float z) {
 constexpr std::array<float, 5> node_places = {-1, -0.5F, 0, 0.5F, 1};
 constexpr std::array<float, 7> probe_places = {-1.001F, -0.75F, -0.25F, 0.25F, 0.7F, 0.85F, 1.001F};
 
-LatticeError::Bound largest_error(const Source& source) {
+LatticeError largest_error(const Source& source) {
   Cube values;
   std::size_t node = 0;
   for (const float z : node_places)
@@ -117,7 +114,7 @@ LatticeError::Bound largest_error(const Source& source) {
       for (const float x : node_places) values[node++] = source.field(x, y, z);
   std::array<float, 4 * monomials_to_degree(4)> polynomial;
   lattice_polynomial(reinterpret_cast<const float*>(values.data()), polynomial.data());
-  LatticeError::Bound worst{0, 0};
+  LatticeError worst{0, 0};
   for (const float z : probe_places)
     for (const float y : probe_places)
       for (const float x : probe_places) {
@@ -130,38 +127,22 @@ LatticeError::Bound largest_error(const Source& source) {
 
 }  // namespace
 
-LatticeError::LatticeError(int exponent) : exponent_(exponent) {
+LatticeError lattice_error(int exponent) {
   constexpr std::array<std::array<float, 3>, 7> directions = {
       {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {0, 1, 2}, {1, 1, 2}, {1, 2, 2}, {1, 2, 3}}};
-  constexpr float margin = 1.25F;
-  for (int i = 0; i <= steps_per_octave * octaves; ++i) {
-    // Exactly the squared distances at which at() changes its entry.
-    const float octave = std::ldexp(nearest, i / steps_per_octave);
-    const float distance = std::sqrt(octave * (1 + static_cast<float>(i % steps_per_octave) / steps_per_octave));
-    Bound worst{0, 0};
+  constexpr float margin = 1.25F, step = 1.125F;
+  LatticeError worst{0, 0};
+  float distance = std::sqrt(LatticeError::nearest);
+  for (int i = 0; i < 19; ++i, distance *= step) {
+    const float root = std::sqrt(distance * distance - LatticeError::offset);
+    const auto fall = static_cast<float>(integer_power(root, exponent + 5)) * margin;
     for (const auto& d : directions) {
       const float scale = distance / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-      const Bound e = largest_error({{d[0] * scale, d[1] * scale, d[2] * scale}, exponent});
-      worst = {std::max(worst.field, margin * e.field), std::max(worst.gradient, margin * e.gradient)};
+      const LatticeError e = largest_error({{d[0] * scale, d[1] * scale, d[2] * scale}, exponent});
+      worst = {std::max(worst.field, fall * e.field), std::max(worst.gradient, fall * root * e.gradient)};
     }
-    table_.push_back(worst);
   }
-}
-
-LatticeError::Bound LatticeError::at(float distance_squared) const {
-  if (!(distance_squared >= nearest)) {
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    return {infinity, infinity};
-  }
-  constexpr int steps = steps_per_octave * octaves;
-  static_assert(steps_per_octave == 8);  // three bits of the significand
-  const auto at = static_cast<int>((std::bit_cast<std::uint32_t>(distance_squared) >> 20) -
-                                   (std::bit_cast<std::uint32_t>(nearest) >> 20));
-  if (at < steps) return table_[static_cast<std::size_t>(at)];
-  const float ratio2 = std::ldexp(nearest, octaves) / distance_squared, ratio = std::sqrt(ratio2);
-  const auto shrink = static_cast<float>(integer_power(ratio, exponent_)) * ratio2 * ratio2 * ratio;
-  const Bound& last = table_.back();
-  return {last.field * shrink, last.gradient * shrink * ratio};
+  return worst;
 }
 
 }  // namespace marrow

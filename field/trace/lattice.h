@@ -1,7 +1,7 @@
 // A smooth field in a cube as a polynomial through its values on a lattice, and how far off that can be.
 #pragma once
 
-#include <vector>
+#include "field/trace/block_kernels.h"
 
 namespace marrow {
 
@@ -13,25 +13,11 @@ inline constexpr int lattice_nodes = lattice_side * lattice_side * lattice_side;
 /// Chebyshev series. Polynomials of total degree 4 are reproduced.
 void lattice_polynomial(const float* values, float* polynomial);
 
-/// Bounds the error of lattice_polynomial() for one source of f = d^-m, G = m (p - q) d^-(m+2), anywhere in the cube
-/// and a thousandth beyond it, by the distance of the source from the centre of the cube. Found numerically, not
-/// proved: the largest error over seven directions (of which those to the corner, the edge and the face of a cube are
-/// the extremes) and 343 points, times a quarter more. Beyond eight half sides the error falls at least as fast as the
-/// first term that is cut, distance^-(m+5).
-class LatticeError {
- public:
-  explicit LatticeError(int exponent);
-  struct Bound {
-    float field, gradient;
-  };
-  /// Infinite where the source is too near.
-  Bound at(float distance_squared) const;
-
- private:
-  static constexpr int steps_per_octave = 8, octaves = 5;  // of the squared distance, from `nearest` on
-  static constexpr float nearest = 2;
-  int exponent_;
-  std::vector<Bound> table_;
-};
+/// Finds the constants of LatticeError for sources of f = d^-m, G = m (p - q) d^-(m+2): the error of
+/// lattice_polynomial() anywhere in the cube and a thousandth beyond it. The first terms that are cut fall with the
+/// distance d as d^-(m+5) and d^-(m+6); nearer sources come as near as d^2 - 3 to the corners.
+/// Found numerically, not proved: the largest over 19 distances, seven directions (of which those to the corner, the
+/// edge and the face of a cube are the extremes) and 343 points, and a quarter more.
+LatticeError lattice_error(int exponent);
 
 }  // namespace marrow

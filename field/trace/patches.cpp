@@ -30,33 +30,6 @@ struct Errors {
   float field = 0, gradient = 0;
 };
 
-struct Cube {
-  float center[3], half;
-
-  Cube octant(int i) const {
-    Cube c{.center = {}, .half = 0.5F * half};
-    for (int k = 0; k < 3; ++k) c.center[k] = center[k] + (i >> k & 1 ? c.half : -c.half);
-    return c;
-  }
-};
-
-void add_lattice_errors(const float* group, int groups, int exponent, const LatticeError& table, const Cube& cube,
-                        Errors& errors) {
-  const float per_half = 1 / cube.half;
-  float scale = 1;
-  for (int i = 0; i < exponent; ++i) scale *= per_half;
-  for (int k = 0; k < groups; ++k, group += floats_per_group)
-    for (int lane = 0; lane < lanes; ++lane) {
-      const float* s = group + lane;
-      if (!(s[48] > 0)) continue;  // unused
-      const float dx = (s[0] - cube.center[0]) * per_half, dy = (s[16] - cube.center[1]) * per_half,
-                  dz = (s[32] - cube.center[2]) * per_half;
-      const LatticeError::Bound e = table.at(dx * dx + dy * dy + dz * dz);
-      errors.field += s[48] * scale * e.field;
-      errors.gradient += s[48] * scale * s[64] * per_half * e.gradient;
-    }
-}
-
 // How far a polynomial can rise above all corners of a cell of the lattice: by the error of interpolation between
 // corners, the sum over axes of side^2 / 8 times the largest second derivative. |G| by the length of that of its
 // components.
@@ -72,151 +45,133 @@ Errors bends(const float* polynomial) {
           scale * std::sqrt(second[1] * second[1] + second[2] * second[2] + second[3] * second[3])};
 }
 
-// Box and plane around what is included.
-struct Fit {
-  float lower[3] = {infinity, infinity, infinity}, upper[3] = {-infinity, -infinity, -infinity};
-  float normal[3] = {}, offset = -1e30F;
-
-  bool empty() const { return !(lower[0] <= upper[0]); }
-
-  void include(const Cube& cube) {
-    float top = 0;
-    for (int k = 0; k < 3; ++k) {
-      const float low = cube.center[k] - cube.half, high = cube.center[k] + cube.half;
-      lower[k] = std::min(lower[k], low);
-      upper[k] = std::max(upper[k], high);
-      top += normal[k] * (normal[k] > 0 ? high : low);
-    }
-    offset = std::max(offset, top);
-  }
-
-  // `normal` of length 1, or 0.
-  void set_normal(const float* gradient) {
+// Box and plane around the marked cells of a lattice.
+class Fit {
+ public:
+  Fit(const Cube& cube, const float* polynomial) : cube_(cube) {
+    const float gradient[3] = {polynomial[4], polynomial[8], polynomial[12]};
     const float length2 = gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2];
     const float scale = length2 > 0 ? -1 / std::sqrt(length2) : 0;
-    for (int k = 0; k < 3; ++k) normal[k] = gradient[k] * scale;
+    for (int k = 0; k < 3; ++k) normal_[k] = gradient[k] * scale;
   }
-};
 
-class Builder {
- public:
-  Builder(const FieldLevel& level, int degree, const IsoCurve& iso, const LatticeErrors& tables,
-          const BlockKernels& kernels)
-      : level_(level), degree_(degree), iso_(iso), view_(iso.view()), tables_(tables), kernels_(kernels) {}
-
-  // Divides a cube; returns the box around the surface in it. The node is appended.
-  Fit divide(const Cube& cube, int depth) {
-    const std::size_t at = out.nodes.size();
-    out.nodes.push_back({});
-    PatchNode node{};
-    for (int k = 0; k < 3; ++k) node.center[k] = cube.center[k];
-    node.half = cube.half;
-    Fit all;
-    for (int i = 0; i < 8; ++i) {
-      const Cube octant = cube.octant(i);
-      const Fit fit = fill(node, i, octant, depth);
-      for (int k = 0; k < 3; ++k) {
-        node.lower[k][i] = fit.empty() ? 0 : fit.lower[k] - overlap;
-        node.upper[k][i] = fit.empty() ? 0 : fit.upper[k] + overlap;
-        node.normal[k][i] = fit.normal[k];
-        all.lower[k] = std::min(all.lower[k], fit.lower[k]);
-        all.upper[k] = std::max(all.upper[k], fit.upper[k]);
-      }
-      node.offset[i] = fit.offset + overlap;
+  void include(int cell) {
+    const float side = 2 * cube_.half / cells_per_axis;
+    const int at[3] = {cell % cells_per_axis, cell / cells_per_axis % cells_per_axis,
+                       cell / (cells_per_axis * cells_per_axis)};
+    float top = 0;
+    for (int k = 0; k < 3; ++k) {
+      const float low = cube_.center[k] - cube_.half + side * static_cast<float>(at[k]), high = low + side;
+      lower_[k] = std::min(lower_[k], low);
+      upper_[k] = std::max(upper_[k], high);
+      top += normal_[k] * (normal_[k] > 0 ? high : low);
     }
-    all.offset = all.empty() ? -1e30F : 1e30F;
-    out.nodes[at] = node;
-    return all;
+    offset_ = std::max(offset_, top);
   }
 
-  Patches out;
+  void write(Patch& out) const {
+    for (int k = 0; k < 3; ++k) {
+      out.lower[k] = lower_[k] - overlap;
+      out.upper[k] = upper_[k] + overlap;
+      out.normal[k] = normal_[k];
+    }
+    out.offset = offset_ + overlap;
+  }
 
  private:
-  bool holds_surface(const Cube& cube) const {
-    const BallBounds b = kernels_.ball_bounds(level_, degree_, cube.center, cube.half * 1.7322F);
-    if (static_cast<double>(b.f_low) > iso_.critical_field() * 1.00001) return false;
-    return b.touches || !iso_.outside(0, static_cast<double>(b.f_high), static_cast<double>(b.g_high));
-  }
-
-  Fit fill(PatchNode& node, int octant, const Cube& cube, int depth) {
-    if (!holds_surface(cube)) return {};
-    Errors e{level_.f_error, level_.g_error};
-    add_lattice_errors(level_.sources, level_.curve_groups, degree_, tables_.curves, cube, e);
-    add_lattice_errors(level_.sources + static_cast<long>(level_.curve_groups) * floats_per_group, level_.point_groups,
-                       degree_ - 1, tables_.points, cube, e);
-    const float total = e.field + e.gradient / static_cast<float>(degree_);
-    if (!(total < accurate_enough) && depth < deepest) {
-      node.child[octant] = static_cast<int>(out.nodes.size());
-      return divide(cube, depth + 1);
-    }
-    if (!(total < useless)) {
-      node.polynomial[octant] = PatchNode::by_sources;
-      Fit fit;
-      fit.include(cube);
-      fit.offset = 1e30F;
-      return fit;
-    }
-    return add_patch(node, octant, cube, e);
-  }
-
-  Fit add_patch(PatchNode& node, int octant, const Cube& cube, const Errors& e) {
-    alignas(64) float values[4 * lattice_stride];
-    kernels_.lattice_values(level_, degree_, cube.center, cube.half, values);
-    float polynomial[far_floats], x_most = 0, y_most = 0;
-    lattice_polynomial(values, polynomial);
-    for (int i = 0; i < lattice_nodes; ++i) {
-      const float* v = values + 4 * i;
-      x_most = std::max(x_most, v[0]);
-      y_most = std::max(y_most, std::fabs(v[1]) + std::fabs(v[2]) + std::fabs(v[3]));
-    }
-    const float f_error = e.field + rounding * x_most, g_error = e.gradient + rounding * y_most;
-    const Errors bend = bends(polynomial);
-    const std::uint64_t marks = kernels_.lattice_marks(
-        view_,
-        {bend.field + 2 * f_error, bend.gradient + 2 * g_error, static_cast<float>(1.0001 * iso_.critical_field())},
-        values);
-    Fit fit;
-    if (marks == 0) return fit;
-    const float gradient[3] = {polynomial[4], polynomial[8], polynomial[12]};
-    fit.set_normal(gradient);
-    include(marks, cube, fit);
-    node.f_error[octant] = f_error;
-    node.g_error[octant] = g_error;
-    node.polynomial[octant] = static_cast<int>(out.polynomials.size()) / far_floats;
-    out.polynomials.insert(out.polynomials.end(), polynomial, polynomial + far_floats);
-    return fit;
-  }
-
-  static void include(std::uint64_t marks, const Cube& cube, Fit& fit) {
-    const float half = cube.half / cells_per_axis;
-    for (; marks != 0; marks &= marks - 1) {
-      const int i = __builtin_ctzll(marks);
-      const int at[3] = {i % cells_per_axis, i / cells_per_axis % cells_per_axis,
-                         i / (cells_per_axis * cells_per_axis)};
-      Cube cell{.center = {}, .half = half};
-      for (int k = 0; k < 3; ++k)
-        cell.center[k] = cube.center[k] - cube.half + half * static_cast<float>(2 * at[k] + 1);
-      fit.include(cell);
-    }
-  }
-
-  const FieldLevel& level_;
-  int degree_;
-  const IsoCurve& iso_;
-  IsoCurve::View view_;
-  const LatticeErrors& tables_;
-  const BlockKernels& kernels_;
+  const Cube& cube_;
+  float lower_[3] = {infinity, infinity, infinity}, upper_[3] = {-infinity, -infinity, -infinity};
+  float normal_[3], offset_ = -infinity;
 };
+
+void cover(const Cube& cube, Patch& out) {
+  for (int k = 0; k < 3; ++k) {
+    out.lower[k] = cube.center[k] - cube.half - overlap;
+    out.upper[k] = cube.center[k] + cube.half + overlap;
+    out.normal[k] = 0;
+    out.center[k] = cube.center[k];
+  }
+  out.offset = 1e30F;
+  out.half = cube.half;
+}
+
+// `errors`: of the interpolation.
+void make_polynomial(const PatchSource& source, const Cube& cube, const Errors& errors, Patch& out) {
+  alignas(64) float values[4 * lattice_stride];
+  source.kernels.lattice_values(source.level, source.degree, cube.center, cube.half, values);
+  lattice_polynomial(values, out.polynomial);
+  float x_most = 0, y_most = 0;
+  for (int i = 0; i < lattice_nodes; ++i) {
+    const float* v = values + 4 * i;
+    x_most = std::max(x_most, v[0]);
+    y_most = std::max(y_most, std::fabs(v[1]) + std::fabs(v[2]) + std::fabs(v[3]));
+  }
+  out.f_error = source.level.f_error + errors.field + rounding * x_most;
+  out.g_error = source.level.g_error + errors.gradient + rounding * y_most;
+  const Errors bend = bends(out.polynomial);
+  const std::uint64_t marks =
+      source.kernels.lattice_marks(source.iso.view(),
+                                   {bend.field + 2 * out.f_error, bend.gradient + 2 * out.g_error,
+                                    static_cast<float>(1.0001 * source.iso.critical_field())},
+                                   values);
+  if (marks == 0) return;
+  out.kind = Patch::Kind::Smooth;
+  Fit fit(cube, out.polynomial);
+  for (std::uint64_t left = marks; left != 0; left &= left - 1) fit.include(__builtin_ctzll(left));
+  fit.write(out);
+}
+
+bool holds_surface(const CubeBounds& b, const IsoCurve& iso) {
+  if (static_cast<double>(b.f_low) > iso.critical_field() * 1.00001) return false;
+  return b.touches || !iso.outside(0, static_cast<double>(b.f_high), static_cast<double>(b.g_high));
+}
 
 }  // namespace
 
-Patches make_patches(const FieldLevel& level, int degree, const IsoCurve& iso, const LatticeErrors& tables,
-                     const BlockKernels& kernels) {
-  Builder builder(level, degree, iso, tables, kernels);
-  const Fit fit = builder.divide({.center = {0, 0, 0}, .half = 1}, 1);
-  std::copy_n(fit.lower, 3, builder.out.lower);
-  std::copy_n(fit.upper, 3, builder.out.upper);
-  return std::move(builder.out);
+struct OctantPatches::Owned {
+  Patch patch;
+  std::unique_ptr<const OctantPatches> octants;
+};
+
+OctantPatches::OctantPatches(const PatchSource& source, const Cube& cube, int depth)
+    : source_(source), cube_(cube), depth_(depth) {
+  patch = [](const Octants& octants, int i) -> const Patch& {
+    const auto& self = static_cast<const OctantPatches&>(octants);
+    return self.patches_[i].get([&] { return self.make(i); }).patch;
+  };
+  for (int i = 0; i < 8; ++i) {
+    const Cube octant = cube.octant(i);
+    const CubeBounds b =
+        source.kernels.cube_bounds(source.level, source.degree, source.errors, octant.center, octant.half);
+    f_error_[i] = b.f_error;
+    g_error_[i] = b.g_error;
+    for (int k = 0; k < 3; ++k) {
+      boxes.lower[k][i] = octant.center[k] - octant.half - overlap;
+      boxes.upper[k][i] = octant.center[k] + octant.half + overlap;
+    }
+    if (holds_surface(b, source.iso)) boxes.present |= 1U << i;
+  }
+}
+
+OctantPatches::~OctantPatches() = default;
+
+std::unique_ptr<const OctantPatches::Owned> OctantPatches::make(int octant) const {
+  auto out = std::make_unique<Owned>();
+  Patch& p = out->patch;
+  const Cube cube = cube_.octant(octant);
+  cover(cube, p);
+  const Errors errors{f_error_[octant], g_error_[octant]};
+  const float total = errors.field + errors.gradient / static_cast<float>(source_.degree);
+  if (!(total < accurate_enough) && depth_ < deepest) {
+    out->octants = std::make_unique<const OctantPatches>(source_, cube, depth_ + 1);
+    p.octants = out->octants.get();
+    p.kind = p.octants->boxes.present != 0 ? Patch::Kind::Divided : Patch::Kind::Empty;
+  } else if (!(total < useless)) {
+    p.kind = Patch::Kind::Sources;
+  } else {
+    make_polynomial(source_, cube, errors, p);
+  }
+  return out;
 }
 
 }  // namespace marrow

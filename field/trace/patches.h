@@ -1,31 +1,51 @@
 // The field of a block in patches: cubes with a polynomial each, accurate enough to tell where surface can be.
 #pragma once
 
-#include <vector>
+#include <memory>
 
 #include "field/trace/block_kernels.h"
+#include "field/trace/iso_curve.h"
 #include "field/trace/lattice.h"
+#include "field/trace/lazy.h"
 
 namespace marrow {
 
-class IsoCurve;
-
-/// Errors of interpolation by lattice_polynomial() for the sources of a blend: curves, and points.
-struct LatticeErrors {
-  LatticeError curves, points;
-  explicit LatticeErrors(int degree) : curves(degree), points(degree - 1) {}
+/// What patches are made from: a field in block coordinates whose errors are against the exact one.
+struct PatchSource {
+  const FieldLevel& level;
+  int degree;
+  const IsoCurve& iso;
+  const LatticeError (&errors)[2];  ///< of curves, and of points
+  const BlockKernels& kernels;
 };
 
-/// The patches of one block. In each, surface can only be in a box and below a plane: cells of a quarter of the patch's
-/// side are ruled out where the values at their corners, raised by what the polynomial can bend between them and by all
-/// errors, lie outside the iso curve, or so far above 1 that all is inside.
-struct Patches {
-  std::vector<PatchNode> nodes;  ///< the first divides the block
-  std::vector<float> polynomials;
-  float lower[3], upper[3];  ///< of a box around all surface, when there is any
+struct Cube {
+  float center[3], half;
+
+  Cube octant(int i) const {
+    Cube c{.center = {}, .half = 0.5F * half};
+    for (int k = 0; k < 3; ++k) c.center[k] = center[k] + (i >> k & 1 ? c.half : -c.half);
+    return c;
+  }
 };
 
-/// `level` is the field, in block coordinates; its errors are against the exact field.
-Patches make_patches(const FieldLevel& level, int degree, const IsoCurve&, const LatticeErrors&, const BlockKernels&);
+/// The octants of a cube that may hold surface; their patches are made when the first ray comes. Those bounds over
+/// cubes prove to be outside or inside are dropped.
+class OctantPatches : public Octants {
+ public:
+  /// The source must outlive them. `depth`: divisions of the block, this one included.
+  OctantPatches(const PatchSource&, const Cube&, int depth);
+  ~OctantPatches();
+
+ private:
+  struct Owned;
+  std::unique_ptr<const Owned> make(int octant) const;
+
+  const PatchSource& source_;
+  Cube cube_;
+  int depth_;
+  float f_error_[8], g_error_[8];  // of polynomials through lattices
+  Lazy<Owned> patches_[8];
+};
 
 }  // namespace marrow

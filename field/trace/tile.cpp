@@ -11,6 +11,7 @@ Tile::Tile(const TilePlace& place, Surroundings coarse, const TileContent& conte
     : place_(place),
       content_(content),
       coarse_(std::move(coarse)),
+      boxes_(std::make_unique<const TileBoxes>(place_, content_)),
       blocks_(new Lazy<Block>[static_cast<std::size_t>(std::popcount(content.cells))]),
       children_(new Lazy<Tile>[static_cast<std::size_t>(std::popcount(content.tiles))]) {}
 

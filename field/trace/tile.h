@@ -12,7 +12,7 @@
 namespace marrow {
 
 class Block;
-struct TileBoxes;
+class TileBoxes;
 
 /// Where a tile is and what it belongs to.
 struct TilePlace {
@@ -48,8 +48,8 @@ class Tile {
   const Lazy<Surroundings>& fine() const { return fine_; }
   /// Of a slot that has one.
   const Lazy<Block>& block(int slot) const { return blocks_[rank(content_.cells, slot)]; }
-  /// Where in its slots surface can be.
-  const Lazy<TileBoxes>& boxes() const { return boxes_; }
+  /// Where in it surface can be.
+  const TileBoxes& boxes() const { return *boxes_; }
   const Lazy<Tile>& child(int slot) const { return children_[rank(content_.tiles, slot)]; }
   /// Of this tile itself, without its blocks and smaller tiles.
   std::size_t bytes() const;
@@ -63,7 +63,7 @@ class Tile {
   TileContent content_;
   Surroundings coarse_;
   Lazy<Surroundings> fine_;
-  Lazy<TileBoxes> boxes_;
+  std::unique_ptr<const TileBoxes> boxes_;
   std::unique_ptr<Lazy<Block>[]> blocks_;
   std::unique_ptr<Lazy<Tile>[]> children_;
 };

@@ -15,26 +15,47 @@ inline void insert(Stretches& s, int octant) {
   s.order[k] = octant;
 }
 
-void stretches(const PatchNode& node, const LocalRay& ray, float t0, float t1, Stretches& out) {
-  V8 enter = V8{} + t0, leave = V8{} + t1, slope{}, height = load8(node.offset);
+using Index8 = int __attribute__((vector_size(32)));
+
+// A bit for each lane that is set.
+inline unsigned bits_of(Index8 lanes_set) {
+  const Index8 weight{1, 2, 4, 8, 16, 32, 64, 128}, v = lanes_set & weight;
+  const Index8 a = v | __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3);
+  const Index8 b = a | __builtin_shufflevector(a, a, 2, 3, 0, 1, 2, 3, 0, 1);
+  return static_cast<unsigned>(b[0] | b[1]);
+}
+
+void stretches(const OctantBoxes& boxes, const LocalRay& ray, float t0, float t1, Stretches& out) {
+  V8 enter = V8{} + t0, leave = V8{} + t1;
   for (int k = 0; k < 3; ++k) {
     const float inverse = 1 / nonzero(ray.direction[k]), o = ray.origin[k];
-    const V8 a = (load8(node.lower[k]) - o) * inverse, b = (load8(node.upper[k]) - o) * inverse;
+    const V8 a = (load8(boxes.lower[k]) - o) * inverse, b = (load8(boxes.upper[k]) - o) * inverse;
     enter = larger(enter, smaller(a, b));
     leave = smaller(leave, larger(a, b));
-    slope += load8(node.normal[k]) * ray.direction[k];
-    height -= load8(node.normal[k]) * o;
   }
-  // normal . (o + t d) <= offset: from this t on, or up to it
-  const V8 tiny = V8{} + 1e-20F;
-  const V8 rising = slope >= 0.0F ? larger(slope, tiny) : slope, at = height / rising;
-  leave = slope >= 0.0F ? smaller(leave, at) : leave;
-  enter = slope < 0.0F ? larger(enter, at) : enter;
+  out.count = 0;
+  unsigned met = bits_of(enter <= leave) & boxes.present;
+  if (met == 0) return;
   __builtin_memcpy(out.begin, &enter, sizeof out.begin);
   __builtin_memcpy(out.end, &leave, sizeof out.end);
-  out.count = 0;
-  for (int i = 0; i < 8; ++i)
-    if (out.begin[i] <= out.end[i]) insert(out, i);
+  for (; met != 0; met &= met - 1) insert(out, __builtin_ctz(met));
+}
+
+// The stretch of a ray in the box and below the plane of a patch; false when there is none.
+inline bool clip(const Patch& patch, const LocalRay& ray, float& t0, float& t1) {
+  float slope = 0, height = patch.offset;
+  for (int k = 0; k < 3; ++k) {
+    const float inverse = 1 / nonzero(ray.direction[k]), o = ray.origin[k];
+    const float a = (patch.lower[k] - o) * inverse, b = (patch.upper[k] - o) * inverse;
+    t0 = max_of(t0, min_of(a, b));
+    t1 = min_of(t1, max_of(a, b));
+    slope += patch.normal[k] * ray.direction[k];
+    height -= patch.normal[k] * o;
+  }
+  // normal . (o + t d) <= offset: up to this t, or from it on
+  if (slope >= 0) t1 = min_of(t1, height / max_of(slope, 1e-20F));
+  else t0 = max_of(t0, height / slope);
+  return t0 <= t1;
 }
 
 // Where fine samples decide between t0, up to which all is certified outside, and t1.
@@ -46,9 +67,9 @@ inline Root decide_between(const BlockView& block, const LocalRay& ray, float t0
   return root;
 }
 
-// Without a useful polynomial.
+// Without a useful polynomial: the coarse level finds where to look.
 inline Root root_by_sources(const BlockView& block, const LocalRay& ray, float t0, float t1, bool any) {
-  Marcher march(block, block.fine(), ray, t0, t1);
+  Marcher march(block, block.coarse, ray, t0, t1);
   Search search(march, t0, t1);
   Root root;
   float guess = t0;
@@ -77,8 +98,8 @@ inline PatchRay::Run next_run(const PatchRay& polynomial, float& from) {
   return run;
 }
 
-inline Root root_in_patch(const BlockView& block, const PatchNode& node, int octant, const LocalRay& ray, float t0, float t1, bool any) {
-  const PatchRay polynomial(block, node, octant, ray, t0, t1);
+inline Root root_by_polynomial(const BlockView& block, const Patch& patch, const LocalRay& ray, float t0, float t1, bool any) {
+  const PatchRay polynomial(block, patch, ray, t0, t1);
   Root all;
   all.evaluations = 1;
   constexpr int most_scans = 64;
@@ -105,18 +126,25 @@ inline Root root_in_patch(const BlockView& block, const PatchNode& node, int oct
   return all;
 }
 
-Root root_in_node(const BlockView& block, const PatchNode& node, const LocalRay& ray, float t0, float t1, bool any) {
+Root root_in(const BlockView& block, const Octants& octants, const LocalRay& ray, float t0, float t1, bool any);
+
+inline Root root_in_patch(const BlockView& block, const Patch& patch, const LocalRay& ray, float t0, float t1, bool any) {
+  if (patch.kind == Patch::Kind::Empty || !clip(patch, ray, t0, t1)) return {};
+  if (patch.kind == Patch::Kind::Divided) return root_in(block, *patch.octants, ray, t0, t1, any);
+  if (patch.kind == Patch::Kind::Sources) return root_by_sources(block, ray, t0, t1, any);
+  return root_by_polynomial(block, patch, ray, t0, t1, any);
+}
+
+// Boxes overlap by roundings, so that one that begins before a hit may hold a nearer one.
+Root root_in(const BlockView& block, const Octants& octants, const LocalRay& ray, float t0, float t1, bool any) {
   Stretches walk;
-  stretches(node, ray, t0, t1, walk);
+  stretches(octants.boxes, ray, t0, t1, walk);
   Root root;
   for (int i = 0; i < walk.count; ++i) {
     const int octant = walk.order[i];
     if (root.hit && walk.begin[octant] > root.t) break;
-    const float begin = walk.begin[octant], end = walk.end[octant];
-    Root found;
-    if (node.child[octant] > 0) found = root_in_node(block, block.patches[node.child[octant]], ray, begin, end, any);
-    else if (node.polynomial[octant] == PatchNode::by_sources) found = root_by_sources(block, ray, begin, end, any);
-    else found = root_in_patch(block, node, octant, ray, begin, end, any);
+    const Root found =
+        root_in_patch(block, octants.patch(octants, octant), ray, walk.begin[octant], walk.end[octant], any);
     root.evaluations += found.evaluations;
     root.undecided = min_of(root.undecided, found.undecided);
     if (!found.hit || (root.hit && root.t <= found.t)) continue;
@@ -128,13 +156,13 @@ Root root_in_node(const BlockView& block, const PatchNode& node, const LocalRay&
 }
 
 Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
-  if (!query.from_surface) return root_in_node(block, *block.patches, ray, query.t0, query.t1, query.any);
+  if (!query.from_surface) return root_in(block, *block.octants, ray, query.t0, query.t1, query.any);
   // Too near for polynomials; one fine certificate leads away.
   Marcher march(block, block.fine(), ray, query.t0, query.t1);
   Search start(march, query.t0, query.t1);
   start.record(march.sample(query.t0));
   Root root;
-  if (!start.missed()) root = root_in_node(block, *block.patches, ray, start.front, query.t1, query.any);
+  if (!start.missed()) root = root_in(block, *block.octants, ray, start.front, query.t1, query.any);
   root.evaluations += march.evaluations;
   return root;
 }

@@ -18,18 +18,17 @@ struct PatchRay {
     float inside = 0;
   };
 
-  PatchRay(const BlockView& b, const PatchNode& node, int octant, const LocalRay& local, float t0, float t1)
+  PatchRay(const BlockView& b, const Patch& patch, const LocalRay& local, float t0, float t1)
       : block(b),
-        f_error(node.f_error[octant]),
-        g_error(node.g_error[octant]),
-        ray({.far = b.polynomials + static_cast<long>(node.polynomial[octant]) * far_floats},
-            in_octant(local, node, octant), t0, t1) {}
+        f_error(patch.f_error),
+        g_error(patch.g_error),
+        ray({.far = patch.polynomial}, in_patch(local, patch), t0, t1) {}
 
-  static LocalRay in_octant(const LocalRay& local, const PatchNode& node, int octant) {
+  static LocalRay in_patch(const LocalRay& local, const Patch& patch) {
     LocalRay r;
-    const float scale = 2 / node.half;
+    const float scale = 1 / patch.half;
     for (int k = 0; k < 3; ++k) {
-      r.origin[k] = scale * (local.origin[k] - node.center[k]) + (octant >> k & 1 ? -1.0F : 1.0F);
+      r.origin[k] = scale * (local.origin[k] - patch.center[k]);
       r.direction[k] = scale * local.direction[k];
     }
     return r;

@@ -1,31 +1,41 @@
-// Bounds of the field over a ball, and which cells of a lattice may hold surface. Part of block_kernels_<set>.cpp.
+// Bounds of the field over a cube, and which cells of a lattice may hold surface. Part of block_kernels_<set>.cpp.
 
-// |p + v - q| is d - R to d + R: w (d -+ R)^-m bounds a term of f, and m w tau ((d-R)^-(m+1) - d^-(m+1)) the change of
-// one of G.
-struct BallSummer {
+// With R the radius of the ball around the cube |p + v - q| is d - R to d + R: w (d -+ R)^-m bounds a term of f, and
+// m w tau ((d-R)^-(m+1) - d^-(m+1)) the change of one of G.
+struct CubeSummer {
   const float* p;
-  float radius;
-  BallBounds& out;
+  float half;
+  const LatticeError* errors;  // of curves, and of points
+  int degree;
+  CubeBounds& out;
   float (&g)[3];
 
   template <int Exponent>
   void add(const float* group, int groups, int exponent) const {
-    const float m = static_cast<float>(Exponent > 0 ? Exponent : exponent);
-    V16 a[12] = {}, nearest{};
+    const float m = static_cast<float>(Exponent > 0 ? Exponent : exponent), radius = half * 1.7322F;
+    const LatticeError& lattice = errors[exponent == degree ? 0 : 1];
+    const float per_half2 = 1 / (half * half);
+    V16 a[12] = {}, nearest{}, closest = splat(infinity);
     for (int k = 0; k < groups; ++k, group += floats_per_group) {
       const V16 dx = p[0] - load(group), dy = p[1] - load(group + 16), dz = p[2] - load(group + 32);
-      const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz), inv_d = root_of(inv), q = radius * inv_d;
+      const V16 weight = load(group + 48), tau = load(group + 64);
+      const V16 d2 = dx * dx + dy * dy + dz * dz, inv = 1.0F / d2, inv_d = root_of(inv), q = radius * inv_d;
       const V16 stretch = 1.0F / larger(1.0F - q, splat(1e-3F)), shrink = 1.0F / (1.0F + q);
+      const V16 w0 = weight * inverse_power<Exponent>(inv, exponent), k1 = w0 * tau * inv_d, k2 = k1 * inv_d;
       const V16 raised = inverse_power<Exponent>(stretch * stretch, exponent);
-      const V16 w0 = load(group + 48) * inverse_power<Exponent>(inv, exponent);
-      const V16 k1 = w0 * load(group + 64) * inv_d, k2 = k1 * inv_d;
       a[0] += w0 * raised;
       a[1] += k1 * (raised * stretch - 1.0F);
       a[2] += k2 * dx;
       a[3] += k2 * dy;
       a[4] += k2 * dz;
       a[5] += w0 * inverse_power<Exponent>(shrink * shrink, exponent);
-      nearest = larger(nearest, load(group + 48) > 0.0F ? q : V16{});
+      nearest = larger(nearest, weight > 0.0F ? q : V16{});
+      const V16 scaled = weight > 0.0F ? d2 * per_half2 : splat(1e6F);
+      closest = closest < scaled ? closest : scaled;
+      const V16 u = 1.0F / larger(scaled - LatticeError::offset, splat(1)), u_root = root_of(u);
+      const V16 e = weight * (inverse_power<Exponent>(u, exponent) * (u * u)) * u_root;
+      a[6] += e;
+      a[7] += e * u_root * tau;
     }
     float s[16];
     sum_lanes(a, s);
@@ -34,6 +44,12 @@ struct BallSummer {
     out.f_low += s[5];
     for (int i = 0; i < 3; ++i) g[i] -= m * s[2 + i];
     if (!(largest_lane(nearest) < 0.99F)) out.touches = true;
+    // Weights and radii in units of the cube's half side: weight half^-m, tau / half.
+    float scale = 1;
+    for (int i = 0; i < exponent; ++i) scale /= half;
+    if (!(-largest_lane(-closest) >= LatticeError::nearest)) scale = infinity;
+    out.f_error += s[6] * scale * lattice.field;
+    out.g_error += s[7] * scale / half * lattice.gradient;
   }
 };
 
@@ -48,12 +64,14 @@ inline void far_slopes(const FieldLevel& level, float& f_slope, float& g_slope) 
   g_slope = sum[1] + sum[2] + sum[3];
 }
 
-BallBounds ball_bounds(const FieldLevel& level, int degree, const float center[3], float radius) {
-  BallBounds b;
+CubeBounds cube_bounds(const FieldLevel& level, int degree, const LatticeError errors[2], const float center[3],
+                       float half) {
+  CubeBounds b;
   float g[3] = {}, far_f, far_g;
-  for_each_list(level, degree, BallSummer{center, radius, b, g});
+  for_each_list(level, degree, CubeSummer{center, half, errors, degree, b, g});
   far_slopes(level, far_f, far_g);
   const V4 far = far_at(level, center[0], center[1], center[2]);
+  const float radius = half * 1.7322F;
   float yy = 0;
   for (int i = 0; i < 3; ++i) yy += (g[i] + far[i + 1]) * (g[i] + far[i + 1]);
   b.f_high = (b.f_high + far[0] + far_f * radius + level.f_error) * (1 + rounding);
