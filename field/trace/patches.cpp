@@ -23,7 +23,7 @@ constexpr float rounding = 5e-5F;
 
 // An octant is divided when its polynomial could be off by more than this in C, down to `deepest` divisions of a block.
 // An error of `useless` leaves nothing to be told.
-constexpr float accurate_enough = 0.15F, useless = 0.3F;
+constexpr float accurate_enough = 0.1F, useless = 0.3F;
 constexpr int deepest = 2;
 
 struct Errors {

@@ -86,11 +86,56 @@ inline Root root_by_sources(const BlockView& block, const LocalRay& ray, float t
   return root;
 }
 
+// What is known of a ray in a block so far. A patch can end where its polynomial does not tell; the sources are asked
+// about that stretch together with what follows it, for most roots lie just behind.
+struct BlockSearch {
+  const BlockView& block;
+  const LocalRay& ray;
+  bool any;
+  Root root;
+  bool pending = false;  // [begin, end] is not decided, all before is
+  float begin = 0, end = 0, guess = 0;
+
+  // True when the ray is done. `front`: what comes next begins there, or nothing when it is infinite.
+  bool settle(float front) {
+    constexpr float near = 0.05F;
+    if (!pending || front < end + near) return root.hit;
+    pending = false;
+    return add(decide_between(block, ray, begin, end, guess, any));
+  }
+
+  // Sources decide over a stretch, and what was left before it.
+  bool decide_run(float t0, float t1, float root_guess) {
+    const float from = pending ? begin : t0;
+    pending = false;
+    return add(decide_between(block, ray, from, t1, root_guess, any));
+  }
+
+  void leave(float t0, float t1, float root_guess) {
+    if (!pending) {
+      begin = t0;
+      guess = root_guess;
+    }
+    end = t1;
+    pending = true;
+  }
+
+  bool add(const Root& found) {
+    root.evaluations += found.evaluations;
+    root.undecided = min_of(root.undecided, found.undecided);
+    if (found.hit && !(root.hit && root.t <= found.t)) {
+      root.hit = true;
+      root.t = found.t;
+    }
+    return root.hit;
+  }
+};
+
 // The first run that is not cleared by looking at it more closely. `from` is moved to what is certified.
 inline PatchRay::Run next_run(const PatchRay& polynomial, float& from) {
   PatchRay::Run run = polynomial.scan(from, 1);
   float end = 1;
-  for (int zoom = 0; zoom < 3 && run.found && !run.crosses; ++zoom) {
+  for (int zoom = 0; zoom < 3 && run.found && !run.crosses && run.end < 1; ++zoom) {
     end = run.end;
     run = polynomial.scan(run.begin, end);
   }
@@ -98,10 +143,9 @@ inline PatchRay::Run next_run(const PatchRay& polynomial, float& from) {
   return run;
 }
 
-inline Root root_by_polynomial(const BlockView& block, const Patch& patch, const LocalRay& ray, float t0, float t1, bool any) {
-  const PatchRay polynomial(block, patch, ray, t0, t1);
-  Root all;
-  all.evaluations = 1;
+inline bool search_polynomial(BlockSearch& search, const Patch& patch, float t0, float t1) {
+  const PatchRay polynomial(search.block, patch, search.ray, t0, t1);
+  ++search.root.evaluations;
   constexpr int most_scans = 64;
   float from = -1;
   for (int scans = 0; from < 1; ++scans) {
@@ -109,60 +153,53 @@ inline Root root_by_polynomial(const BlockView& block, const Patch& patch, const
     if (scans < most_scans) run = next_run(polynomial, from);
     else from = 1;
     if (!run.found) continue;
-    if (any && run.surely) {
-      all.hit = true;
-      all.t = polynomial.t_of(run.inside);
-      return all;
+    if (search.any && run.surely) {
+      search.root.hit = true;
+      search.root.t = polynomial.t_of(run.inside);
+      return true;
     }
-    const Root root = decide_between(block, ray, max_of(t0, polynomial.t_of(run.begin)),
-                                     min_of(t1, polynomial.t_of(run.end)), polynomial.t_of(run.guess), any);
-    all.evaluations += root.evaluations;
-    all.undecided = min_of(all.undecided, root.undecided);
-    if (!root.hit) continue;
-    all.hit = true;
-    all.t = root.t;
-    return all;
+    const float begin = max_of(t0, polynomial.t_of(run.begin)), end = min_of(t1, polynomial.t_of(run.end));
+    if (search.settle(begin)) return true;
+    if (!run.crosses && run.end >= 1) search.leave(begin, t1, polynomial.t_of(run.guess));
+    else if (search.decide_run(begin, end, polynomial.t_of(run.guess))) return true;
   }
-  return all;
+  return false;
 }
 
-Root root_in(const BlockView& block, const Octants& octants, const LocalRay& ray, float t0, float t1, bool any);
+bool search_octants(BlockSearch& search, const Octants& octants, float t0, float t1);
 
-inline Root root_in_patch(const BlockView& block, const Patch& patch, const LocalRay& ray, float t0, float t1, bool any) {
-  if (patch.kind == Patch::Kind::Empty || !clip(patch, ray, t0, t1)) return {};
-  if (patch.kind == Patch::Kind::Divided) return root_in(block, *patch.octants, ray, t0, t1, any);
-  if (patch.kind == Patch::Kind::Sources) return root_by_sources(block, ray, t0, t1, any);
-  return root_by_polynomial(block, patch, ray, t0, t1, any);
+inline bool search_patch(BlockSearch& search, const Patch& patch, float t0, float t1) {
+  if (patch.kind == Patch::Kind::Empty || !clip(patch, search.ray, t0, t1)) return false;
+  if (patch.kind == Patch::Kind::Divided) return search_octants(search, *patch.octants, t0, t1);
+  if (patch.kind == Patch::Kind::Smooth) return search_polynomial(search, patch, t0, t1);
+  if (search.settle(infinity)) return true;
+  return search.add(root_by_sources(search.block, search.ray, t0, t1, search.any));
 }
 
 // Boxes overlap by roundings, so that one that begins before a hit may hold a nearer one.
-Root root_in(const BlockView& block, const Octants& octants, const LocalRay& ray, float t0, float t1, bool any) {
+bool search_octants(BlockSearch& search, const Octants& octants, float t0, float t1) {
   Stretches walk;
-  stretches(octants.boxes, ray, t0, t1, walk);
-  Root root;
+  stretches(octants.boxes, search.ray, t0, t1, walk);
   for (int i = 0; i < walk.count; ++i) {
     const int octant = walk.order[i];
-    if (root.hit && walk.begin[octant] > root.t) break;
-    const Root found =
-        root_in_patch(block, octants.patch(octants, octant), ray, walk.begin[octant], walk.end[octant], any);
-    root.evaluations += found.evaluations;
-    root.undecided = min_of(root.undecided, found.undecided);
-    if (!found.hit || (root.hit && root.t <= found.t)) continue;
-    root.hit = true;
-    root.t = found.t;
-    if (any) break;
+    if (search.root.hit && (search.any || walk.begin[octant] > search.root.t)) break;
+    search_patch(search, octants.patch(octants, octant), walk.begin[octant], walk.end[octant]);
   }
-  return root;
+  return search.root.hit;
 }
 
 Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
-  if (!query.from_surface) return root_in(block, *block.octants, ray, query.t0, query.t1, query.any);
-  // Too near for polynomials; one fine certificate leads away.
-  Marcher march(block, block.fine(), ray, query.t0, query.t1);
-  Search start(march, query.t0, query.t1);
-  start.record(march.sample(query.t0));
-  Root root;
-  if (!start.missed()) root = root_in(block, *block.octants, ray, start.front, query.t1, query.any);
-  root.evaluations += march.evaluations;
-  return root;
+  BlockSearch search{.block = block, .ray = ray, .any = query.any, .root = {}};
+  float front = query.t0;
+  if (query.from_surface) {  // too near for polynomials; one fine certificate leads away
+    Marcher march(block, block.fine(), ray, query.t0, query.t1);
+    Search start(march, query.t0, query.t1);
+    start.record(march.sample(query.t0));
+    search.root.evaluations = march.evaluations;
+    if (start.missed()) return search.root;
+    front = start.front;
+  }
+  search_octants(search, *block.octants, front, query.t1);
+  search.settle(infinity);
+  return search.root;
 }
