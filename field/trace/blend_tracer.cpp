@@ -169,11 +169,9 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, boo
 std::optional<CellHit> BlendTracer::hit_in(const Block& b, const Ray& ray, bool any, double enter, double exit,
                                            CellLog& log) const {
   const RayInCube cube(ray, b.center(), b.half());
-  const Root root = state_->kernels.first_root(b.view(), cube.local,
-                                               {.t0 = cube.to_local(enter),
-                                                .t1 = cube.to_local(exit),
-                                                .any = any,
-                                                .from_surface = enter <= ray.t_min});
+  const Root root = state_->kernels.first_root(
+      b.view(), cube.local,
+      {.t0 = cube.to_local(enter), .t1 = cube.to_local(exit), .any = any, .from_surface = enter <= ray.t_min});
   log.evaluations += static_cast<std::uint32_t>(root.evaluations);
   log.undecided = std::min(log.undecided, cube.to_world(root.undecided));
   if (!root.hit) return {};

@@ -115,9 +115,8 @@ FieldLevel write_level(const Level& level, float* sources, float* far) {
 
 }  // namespace
 
-Block::Block(const Context& context, const CellTree::Cell& cell) : context_(context),
-      cell_(cell),
-      source_{coarse_, context.degree, context.iso, context.lattice, context.kernels} {
+Block::Block(const Context& context, const CellTree::Cell& cell)
+    : context_(context), cell_(cell), source_{coarse_, context.degree, context.iso, context.lattice, context.kernels} {
   const Level coarse = make_level(context, context.coarse, context.tree.coarse_surroundings(cell), cell);
   float* const sources = context.arena.allocate(coarse.source_floats() + far_floats);
   coarse_ = write_level(coarse, sources, sources + coarse.source_floats());
@@ -144,8 +143,8 @@ const Block::Fine& Block::fine() const {
   return fine_.get([&] {
     const Level level = make_level(context_, context_.fine, context_.tree.surroundings(cell_), cell_);
     float* const sources = context_.arena.allocate(level.source_floats() + far_floats);
-    return std::make_unique<const Fine>(
-        Fine{write_level(level, sources, sources + level.source_floats()), level.far.f_error, level.far.gradient_error});
+    return std::make_unique<const Fine>(Fine{write_level(level, sources, sources + level.source_floats()),
+                                             level.far.f_error, level.far.gradient_error});
   });
 }
 

@@ -21,8 +21,8 @@ class Block {
     std::span<const Piece> pieces;  ///< in the order of the source tree
     const CellTree& tree;
     const PieceCutter& cutter;
-    const NearFar& coarse;  ///< errors of the sources that polynomials are made from
-    const NearFar& fine;    ///< errors of the fine level
+    const NearFar& coarse;             ///< errors of the sources that polynomials are made from
+    const NearFar& fine;               ///< errors of the fine level
     const LatticeError (&lattice)[2];  ///< of curves, and of points
     const IsoCurve& iso;
     const BlockKernels& kernels;

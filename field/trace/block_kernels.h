@@ -91,8 +91,8 @@ struct PointField {
 inline constexpr int far_moment_count = 80;  ///< see FarMoments
 
 inline constexpr int floats_per_piece_group = 12 * lanes;
-///< from xyz, along xyz, 1 / length^2 (0 for a point), mass / tau^m, the same at the smallest radius, tau, length, reach.
-///< The sources are within `reach` of the segment, and within `length` of its nearest point.
+///< from xyz, along xyz, 1 / length^2 (0 for a point), mass / tau^m, the same at the smallest radius, tau, length,
+///< reach. The sources are within `reach` of the segment, and within `length` of its nearest point.
 
 /// Bounds over the ball around one octant of a cube, in the cube's coordinates.
 struct OctantBounds {

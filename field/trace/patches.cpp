@@ -41,8 +41,7 @@ Errors bends(const float* polynomial) {
     for (std::size_t k = 0; k < 4; ++k) second[k] += factor * std::fabs(polynomial[4 * i + k]);
   }
   constexpr float side = 2.0F / cells_per_axis, scale = 1.01F * side * side / 8;
-  return {scale * second[0],
-          scale * std::sqrt(second[1] * second[1] + second[2] * second[2] + second[3] * second[3])};
+  return {scale * second[0], scale * std::sqrt(second[1] * second[1] + second[2] * second[2] + second[3] * second[3])};
 }
 
 // Box and plane around the marked cells of a lattice.

@@ -28,8 +28,10 @@ struct Stage {
   const BlockKernels& kernels;
   NearFar coarse, fine;
   mutable BlockArena arena;
+  LatticeError lattice[2];
   CellTree tree;
   std::vector<CellTree::Cell> cells;
+  Block::Context context;
 
   explicit Stage(BlendField f, std::string_view instruction_set = "")
       : field(std::move(f)),
@@ -40,11 +42,12 @@ struct Stage {
         kernels(*block_kernels(instruction_set)),
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
         fine(field.degree, budget_of(TraceOptions{}.tolerance, field.degree), kernels),
+        lattice{lattice_error(field.degree), lattice_error(field.degree - 1)},
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
-        cells(tree.cells()) {}
+        cells(tree.cells()),
+        context{sources.pieces(), tree, cutter, coarse, fine, lattice, iso, kernels, field.degree, arena} {}
 
-  Block::Context context() const { return {sources.pieces(), tree, cutter, coarse, fine, iso, kernels, field.degree}; }
-  Block block(std::size_t cell) const { return Block(context(), cells[cell], arena); }
+  Block block(std::size_t cell) const { return Block(context, cells[cell]); }
   double value(const Vec3d& p) const { return corrected_value(field, p); }
 };
 

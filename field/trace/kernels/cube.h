@@ -107,8 +107,7 @@ std::uint64_t lattice_marks(const IsoCurve::View& iso, const LatticeRaise& raise
     const float x = (high[i] + raise.field) * (1 + rounding), y = (steep[i] + raise.gradient) * (1 + rounding);
     const float x_low = (low[i] - raise.field) * (1 - rounding);
     if (x_low > raise.surely_inside) continue;
-    const bool outside =
-        margin_at(iso, x, y) > 0 && (!iso.two_sided || margin_at(iso, max_of(0, x_low), y) > 0);
+    const bool outside = margin_at(iso, x, y) > 0 && (!iso.two_sided || margin_at(iso, max_of(0, x_low), y) > 0);
     if (!outside) bits |= std::uint64_t{1} << cell;
   }
   return bits;

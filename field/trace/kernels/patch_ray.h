@@ -45,7 +45,8 @@ struct PatchRay {
     const float bend = 0.25F * width * width / (ray.inverse_half * ray.inverse_half);
     const float x_raise = bend * ray.f_curvature + f_error, y_raise = bend * ray.g_curvature + g_error;
     const V16 x_next = next(x), y_next = next(y);
-    const V16 x_up = (larger(x, x_next) + x_raise) * (1 + rounding), y_up = (larger(y, y_next) + y_raise) * (1 + rounding);
+    const V16 x_up = (larger(x, x_next) + x_raise) * (1 + rounding),
+              y_up = (larger(y, y_next) + y_raise) * (1 + rounding);
     V16 margin = margin_at(block.iso, x_up, y_up);
     if (block.iso.two_sided) {
       const V16 x_low = larger(V16{}, (x < x_next ? x : x_next) - x_raise);
