@@ -14,11 +14,12 @@ namespace {
 #include "field/trace/kernels/points.h"
 #include "field/trace/kernels/mask.h"
 #include "field/trace/kernels/moments.h"
+#include "field/trace/kernels/split.h"
 // clang-format on
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root, point_field, mask, far_moments, octant_bounds};
+  static constexpr BlockKernels kernels{first_root, point_field, mask, far_moments, far_split, octant_bounds};
   return kernels;
 }
 
