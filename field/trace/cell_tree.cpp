@@ -150,8 +150,7 @@ std::unique_ptr<const Tile> CellTree::divide(const TilePlace& place) const {
                                                                                        << slot_at({i, k});
     }
   }
-  // Only smaller tiles need what the dividing has seen.
-  return std::make_unique<const Tile>(place, content.tiles != 0 ? whole.sources : Surroundings{}, content);
+  return std::make_unique<const Tile>(place, whole.sources, content);
 }
 
 // What a cube sees, as one of its octants sees it.
@@ -189,6 +188,15 @@ Surroundings CellTree::surroundings(const Cell& cell) const {
   const SlotPath path = path_of(cell.slot);
   if (cell.large) return refined(fine_, fine_around(*cell.tile), path.outer, cell.center, cell.half, open_all);
   return refined(fine_, fine_around_octant(*cell.tile, path.outer), path.inner, cell.center, cell.half, open_all);
+}
+
+// The list of a tile is short enough to be asked for each of its cells.
+Surroundings CellTree::coarse_surroundings(const Cell& cell) const {
+  const SlotPath path = path_of(cell.slot);
+  Surroundings s{.near = {}, .far = cell.tile->coarse().far.of_child(path.outer)};
+  if (!cell.large) s.far = s.far.of_child(path.inner);
+  s.near = coarse_.split(sources_, cell.tile->coarse().near, cell.center, cell.half, open_all, s.far);
+  return s;
 }
 
 void CellTree::for_each_tile(bool divide, const std::function<void(const Tile&)>& visit) const {

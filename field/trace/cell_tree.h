@@ -55,6 +55,8 @@ class CellTree {
 
   /// The sources around a cell, to the errors of `fine`; all near ones are pieces.
   Surroundings surroundings(const Cell&) const;
+  /// The same to the errors of `coarse`.
+  Surroundings coarse_surroundings(const Cell&) const;
 
   /// Of all tiles made so far, or, when `divide`, of all there are.
   void for_each_tile(bool divide, const std::function<void(const Tile&)>&) const;
