@@ -91,8 +91,9 @@ struct PointField {
 inline constexpr int far_moment_count = 80;  ///< see FarMoments
 
 inline constexpr int floats_per_piece_group = 12 * lanes;
-///< from xyz, along xyz, 1 / length^2 (0 for a point), mass / tau^m, the same at the smallest radius, tau, length,
-///< reach. The sources are within `reach` of the segment, and within `length` of its nearest point.
+///< from xyz, along xyz, 1 / length^2 (0 for a point), share = mass / tau^m, radius at the end less that at `from`,
+///< tau (the larger), length, reach. Sources are within `reach` of the segment, within `length` of its nearest point.
+///< Unused lanes have share 0.
 
 /// Bounds over the ball around one octant of a cube, in the cube's coordinates.
 struct OctantBounds {
@@ -132,6 +133,24 @@ struct Stretches {
   int order[8];  ///< octants that the ray meets
 };
 
+/// Pieces of one kind against the ball around a cube.
+struct FarQuery {
+  float center[3];
+  float radius, half;  ///< of the ball and of the cube, in the coordinates of the pieces
+  int exponent;
+  bool points;
+  float field_budget, gradient_budget;              ///< the errors that one piece may cause
+  float field_series, gradient_series;              ///< binom(exponent + 4, 5), binom(exponent + 5, 5)
+  float field_rule[4] = {}, gradient_rule[4] = {};  ///< constants of GaussError for 1, 2 and 3 nodes
+};
+
+/// Sums over the pieces that are far: their errors, their field and |G| at the cube's centre at most, their moments.
+struct FarSums {
+  float f_error, g_error, field, gradient;
+  float f[far_moment_count],
+      potential[far_moment_count];  ///< in units of the cube, without the constants of FarMoments
+};
+
 struct BlockKernels {
   struct Query {
     float t0, t1;
@@ -151,6 +170,8 @@ struct BlockKernels {
   std::uint64_t (*lattice_marks)(const IsoCurve::View&, const LatticeRaise&, const float* values);
   /// Moments of groups of inverted sources (y, field at the origin, tau), without the constants of FarMoments.
   void (*far_moments)(const float* groups, int count, float* f, float* potential);
+  /// Sets a bit of near[k] for each lane of group k that is not far.
+  void (*far_split)(const float* pieces, int groups, const FarQuery&, unsigned short* near, FarSums&);
   /// Of the eight octants, from groups of pieces: curves, then points.
   void (*octant_bounds)(const float* pieces, int curve_groups, int point_groups, int degree, OctantBounds*);
 };

@@ -15,7 +15,7 @@ namespace marrow {
 namespace {
 
 // Of the half side of a tile: groups up to this size are passed on to its cells unopened.
-constexpr double largest_group = 0.25;
+constexpr double largest_group = 0.25, open_all = -1;
 
 // Squared, of a point outside; 0 inside.
 double distance2(const Box3& box, const Vec3d& p) {
@@ -153,15 +153,22 @@ std::unique_ptr<const Tile> CellTree::divide(const TilePlace& place) const {
   return std::make_unique<const Tile>(place, whole.sources, content);
 }
 
+// What a cube sees, as one of its octants sees it.
+Surroundings CellTree::refined(const NearFar& near_far, const Surroundings& parent, int octant, const Vec3d& center,
+                               double half, double keep) const {
+  Surroundings s{.near = {}, .far = parent.far.of_child(octant)};
+  s.near = near_far.split(sources_, parent.near, center, half, keep, s.far);
+  return s;
+}
+
 const Surroundings& CellTree::fine_around(const Tile& tile) const {
   return tile.fine().get([&] {
     const TilePlace& place = tile.place();
     Surroundings s;
     if (place.parent != nullptr) {
-      const Surroundings& parent = fine_around(*place.parent);
       const SlotPath path = path_of(place.slot);
-      s.far = parent.far.of_child(path.outer).of_child(path.inner);
-      s.near = fine_.split(sources_, parent.near, place.center, place.half, largest_group, s.far);
+      s = refined(fine_, fine_around_octant(*place.parent, path.outer), path.inner, place.center, place.half,
+                  largest_group);
     } else {
       s.near = fine_.split(sources_, sources_.roots(), place.center, place.half, largest_group, s.far);
     }
@@ -169,18 +176,27 @@ const Surroundings& CellTree::fine_around(const Tile& tile) const {
   });
 }
 
-Surroundings CellTree::within(const Surroundings& around, const NearFar& errors, const Cell& cell) const {
-  const SlotPath path = path_of(cell.slot);
-  Surroundings s{.near = {}, .far = around.far.of_child(path.outer)};
-  if (!cell.large) s.far = s.far.of_child(path.inner);
-  s.near = errors.split(sources_, around.near, cell.center, cell.half, -1, s.far);
-  return s;
+const Surroundings& CellTree::fine_around_octant(const Tile& tile, int octant) const {
+  return tile.fine_of_octant(octant).get([&] {
+    const TilePlace& p = tile.place();
+    return std::make_unique<const Surroundings>(
+        refined(fine_, fine_around(tile), octant, octant_center(p.center, p.half, octant), p.half / 2, largest_group));
+  });
 }
 
-Surroundings CellTree::surroundings(const Cell& cell) const { return within(fine_around(*cell.tile), fine_, cell); }
+Surroundings CellTree::surroundings(const Cell& cell) const {
+  const SlotPath path = path_of(cell.slot);
+  if (cell.large) return refined(fine_, fine_around(*cell.tile), path.outer, cell.center, cell.half, open_all);
+  return refined(fine_, fine_around_octant(*cell.tile, path.outer), path.inner, cell.center, cell.half, open_all);
+}
 
+// The list of a tile is short enough to be asked for each of its cells.
 Surroundings CellTree::coarse_surroundings(const Cell& cell) const {
-  return within(cell.tile->coarse(), coarse_, cell);
+  const SlotPath path = path_of(cell.slot);
+  Surroundings s{.near = {}, .far = cell.tile->coarse().far.of_child(path.outer)};
+  if (!cell.large) s.far = s.far.of_child(path.inner);
+  s.near = coarse_.split(sources_, cell.tile->coarse().near, cell.center, cell.half, open_all, s.far);
+  return s;
 }
 
 void CellTree::for_each_tile(bool divide, const std::function<void(const Tile&)>& visit) const {

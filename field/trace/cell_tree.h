@@ -74,7 +74,9 @@ class CellTree {
   std::unique_ptr<const Tile> divide(const TilePlace&) const;
   Surroundings coarse_around(const TilePlace&) const;
   const Surroundings& fine_around(const Tile&) const;
-  Surroundings within(const Surroundings& around, const NearFar& errors, const Cell&) const;
+  const Surroundings& fine_around_octant(const Tile&, int octant) const;
+  Surroundings refined(const NearFar&, const Surroundings&, int octant, const Vec3d& center, double half,
+                       double keep) const;
 
   const SourceTree& sources_;
   const NearFar& coarse_;

@@ -69,7 +69,7 @@ Branch Divider::root() const {
 }
 
 std::array<Divider::Octant, 8> Divider::octants(const Branch& parent) const {
-  const NearGroups near(tree_, parent.sources.near, parent.center, parent.half, degree_);
+  const NearGroups near(tree_, parent.sources.near, parent.center, parent.half);
   std::array<OctantBounds, 8> bounds;
   kernels_.octant_bounds(near.data(), near.curve_groups(), near.point_groups(), degree_, bounds.data());
   const FarField& far = parent.sources.far;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "field/trace/block_kernels.h"
 #include "field/trace/far_field.h"
 #include "field/trace/pieces.h"
 #include "field/trace/quadrature.h"
@@ -12,7 +13,6 @@
 
 namespace marrow {
 
-struct BlockKernels;
 class SourceGroups;
 
 using PieceIndex = std::uint32_t;
@@ -34,12 +34,13 @@ class NearFar {
  public:
   NearFar(int degree, ErrorBudget, const BlockKernels&);
 
-  /// Adds the far ones of `candidates` to `far` (in the coordinates of the cube) and returns the near ones, in order.
+  /// Adds the far ones of `candidates` to `far` (in the coordinates of the cube) and returns the near ones: curves,
+  /// then points, in their order.
   std::vector<PieceIndex> split(std::span<const Piece>, std::span<const PieceIndex> candidates, const Vec3d& center,
                                 double half, FarField& far) const;
 
   /// The same for sources of a tree; groups are opened until they are far, or no larger than `keep` times `half`.
-  /// Adds the far ones to `far` and returns the near ones.
+  /// Adds the far ones to `far` and returns the near ones, groups first.
   std::vector<SourceRef> split(const SourceTree&, std::span<const SourceRef> candidates, const Vec3d& center,
                                double half, double keep, FarField& far) const;
 
@@ -52,12 +53,13 @@ class NearFar {
     double field, gradient;
   };
   Remainders remainders(bool point, double q) const;
-  struct FarLists;
-  bool is_far(const Piece&, double distance, double cube_radius, FarField& far) const;
+  struct FarGroups;
   bool is_far(const SourceNode&, double distance, double cube_radius, FarField& far) const;
-  bool add_if_far(const Piece&, FarLists&) const;
-  bool add_if_far(const SourceNode&, FarLists&) const;
-  void fold(const FarLists&) const;
+  bool add_if_far(const SourceNode&, FarGroups&) const;
+  void fold(const FarGroups&) const;
+  FarQuery query(bool points) const;
+  void add_sums(const FarSums&, int exponent, FarField&) const;
+  double sum_rounding() const;
 
   static constexpr int table_size = 256;
   static constexpr double largest_ratio = 0.5;  ///< of cube radius to distance: beyond it nothing is far

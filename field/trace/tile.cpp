@@ -21,7 +21,11 @@ std::size_t Tile::bytes() const {
   std::size_t sum =
       sizeof(Tile) + coarse_.near.capacity() * sizeof(SourceRef) +
       static_cast<std::size_t>(std::popcount(content_.cells) + std::popcount(content_.tiles)) * sizeof(void*);
-  if (const Surroundings* fine = fine_.peek()) sum += sizeof(Surroundings) + fine->near.capacity() * sizeof(SourceRef);
+  const auto add = [&](const Lazy<Surroundings>& lazy) {
+    if (const Surroundings* s = lazy.peek()) sum += sizeof(Surroundings) + s->near.capacity() * sizeof(SourceRef);
+  };
+  add(fine_);
+  for (const auto& octant : octants_) add(octant);
   return sum;
 }
 

@@ -1,6 +1,7 @@
 // A cube of 4 x 4 x 4 slots: what of the space of a blend is divided at once, when the first ray comes by.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <memory>
@@ -46,6 +47,7 @@ class Tile {
   const TileContent& content() const { return content_; }
   const Surroundings& coarse() const { return coarse_; }
   const Lazy<Surroundings>& fine() const { return fine_; }
+  const Lazy<Surroundings>& fine_of_octant(int octant) const { return octants_[static_cast<std::size_t>(octant)]; }
   /// Of a slot that has one.
   const Lazy<Block>& block(int slot) const { return blocks_[rank(content_.cells, slot)]; }
   /// Where in it surface can be.
@@ -64,6 +66,7 @@ class Tile {
   Surroundings coarse_;
   Lazy<Surroundings> fine_;
   std::unique_ptr<const TileBoxes> boxes_;
+  std::array<Lazy<Surroundings>, 8> octants_;
   std::unique_ptr<Lazy<Block>[]> blocks_;
   std::unique_ptr<Lazy<Tile>[]> children_;
 };

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,9 +50,15 @@ class Builder {
       problems.insert(problems.end(), program.why().begin(), program.why().end());
       return;
     }
+    std::map<std::size_t, const FieldSolid*> placed;  // by shape
     for (const PlacedBlend& part : program->parts()) {
+      if (const auto same = placed.find(part.shape); part.shape != 0 && same != placed.end()) {
+        solids.push_back({same->second->placed_again(part, object.material), id});
+        continue;
+      }
       auto solid = FieldSolid::make(part, object.material, {.instruction_set = options_.isa});
       if (solid) {
+        placed[part.shape] = solid->get();
         solids.push_back({std::move(*solid), id});
         continue;
       }
@@ -98,10 +106,12 @@ SurfaceReport report(const Surfaces& surfaces) {
   const auto* embree = dynamic_cast<const EmbreeSurfaces*>(&surfaces);
   if (embree == nullptr) return r;
   r.build_seconds = embree->build_seconds;
+  std::set<const BlendTracer*> counted;
   for (const PlacedSolid& p : embree->solids()) {
     r.primitives += p.solid->primitive_count();
-    r.bytes += p.solid->bytes();
     const auto* field = dynamic_cast<const FieldSolid*>(p.solid.get());
+    if (field != nullptr && !counted.insert(&field->tracer()).second) continue;
+    r.bytes += p.solid->bytes();
     if (field == nullptr) continue;
     const TraceStatistics s = field->statistics();
     r.cells += s.cells;

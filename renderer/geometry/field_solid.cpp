@@ -12,7 +12,11 @@ Result<std::unique_ptr<FieldSolid>> FieldSolid::make(PlacedBlend part, MaterialI
       new FieldSolid(std::move(*tracer), part.world_from_local, part.local_from_world, of_object));
 }
 
-FieldSolid::FieldSolid(std::unique_ptr<BlendTracer> tracer, const Affine& world_from_local,
+std::unique_ptr<FieldSolid> FieldSolid::placed_again(const PlacedBlend& part, MaterialId of_object) const {
+  return std::unique_ptr<FieldSolid>(new FieldSolid(tracer_, part.world_from_local, part.local_from_world, of_object));
+}
+
+FieldSolid::FieldSolid(std::shared_ptr<const BlendTracer> tracer, const Affine& world_from_local,
                        const Affine& local_from_world, MaterialId of_object)
     : tracer_(std::move(tracer)),
       world_from_local_(world_from_local),
