@@ -72,7 +72,17 @@ struct BlendTracer::State {
         fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
         lattice{lattice_error(field.degree), lattice_error(field.degree - 1)},
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
-        context{sources.pieces(), tree, cutter, coarse, fine, lattice, iso, kernels, field.degree, arena} {}
+        context{sources.pieces(),
+                tree,
+                cutter,
+                coarse,
+                fine,
+                lattice,
+                iso,
+                kernels,
+                field.degree,
+                arena,
+                options.polynomials && polynomials_pay(sources.pieces().size())} {}
 };
 
 Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const TraceOptions& options) {
@@ -146,7 +156,10 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, boo
     if (hit && (!best || hit->t < best->t)) best = hit;
   };
   const auto behind = [&](float begin) { return best && (any || cube.to_world(begin) > best->t); };
-  const auto cell_box = [&](int slot) { return block(tile, slot).box(); };
+  // A tight box is worth a block only where many rays come.
+  const auto cell_box = [&](int slot) {
+    return state_->context.polynomials ? block(tile, slot).box() : CellTree::cell(tile, slot).box();
+  };
   Stretches outer, inner;
   state_->kernels.stretches(boxes.octants(), cube.local, cube.to_local(enter), cube.to_local(exit), outer);
   for (int i = 0; i < outer.count; ++i) {

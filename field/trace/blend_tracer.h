@@ -28,6 +28,7 @@ struct TraceOptions {
   /// Aim for the displacement of the traced surface from the exact one, over the local radius. Error budgets come from
   /// it; TraceStatistics::largest_error tells what is certified.
   double tolerance = 1e-5;
+  bool polynomials = true;  ///< false: none to find where surface can be, however many rays may come
 };
 
 struct CellHit {

@@ -116,7 +116,8 @@ FieldLevel write_level(const Level& level, float* sources, float* far) {
 }  // namespace
 
 Block::Block(const Context& context, const CellTree::Cell& cell)
-    : context_(context), cell_(cell), source_{coarse_, context.degree, context.iso, context.lattice, context.kernels} {
+    : context_(context), cell_(cell), source_{coarse_,         context.degree,  context.iso,
+                                              context.lattice, context.kernels, context.polynomials} {
   const Level coarse = make_level(context, context.coarse, context.tree.coarse_surroundings(cell), cell);
   float* const sources = context.arena.allocate(coarse.source_floats() + far_floats);
   coarse_ = write_level(coarse, sources, sources + coarse.source_floats());

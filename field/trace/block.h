@@ -28,6 +28,7 @@ class Block {
     const BlockKernels& kernels;
     int degree;
     BlockArena& arena;  ///< holds what blocks are made of
+    bool polynomials;   ///< see PatchSource
   };
   /// The context must outlive the block.
   Block(const Context&, const CellTree::Cell&);

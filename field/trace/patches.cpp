@@ -161,11 +161,12 @@ std::unique_ptr<const OctantPatches::Owned> OctantPatches::make(int octant) cons
   cover(cube, p);
   const Errors errors{f_error_[octant], g_error_[octant]};
   const float total = errors.field + errors.gradient / static_cast<float>(source_.degree);
-  if (!(total < accurate_enough) && depth_ < deepest) {
+  const bool accurate = source_.polynomials && total < accurate_enough;
+  if (!accurate && depth_ < deepest) {
     out->octants = std::make_unique<const OctantPatches>(source_, cube, depth_ + 1);
     p.octants = out->octants.get();
     p.kind = p.octants->boxes.present != 0 ? Patch::Kind::Divided : Patch::Kind::Empty;
-  } else if (!(total < useless)) {
+  } else if (!source_.polynomials || !(total < useless)) {
     p.kind = Patch::Kind::Sources;
   } else {
     make_polynomial(source_, cube, errors, p);

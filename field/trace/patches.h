@@ -17,6 +17,7 @@ struct PatchSource {
   const IsoCurve& iso;
   const LatticeError (&errors)[2];  ///< of curves, and of points
   const BlockKernels& kernels;
+  bool polynomials;  ///< else all patches are left to the sources: where few rays come, polynomials do not pay
 };
 
 struct Cube {

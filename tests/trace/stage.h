@@ -45,7 +45,7 @@ struct Stage {
         lattice{lattice_error(field.degree), lattice_error(field.degree - 1)},
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
         cells(tree.cells()),
-        context{sources.pieces(), tree, cutter, coarse, fine, lattice, iso, kernels, field.degree, arena} {}
+        context{sources.pieces(), tree, cutter, coarse, fine, lattice, iso, kernels, field.degree, arena, true} {}
 
   Block block(std::size_t cell) const { return Block(context, cells[cell]); }
   double value(const Vec3d& p) const { return corrected_value(field, p); }
