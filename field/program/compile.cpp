@@ -44,6 +44,7 @@ class Compiler {
 
   Result<FieldProgram> run() {
     if (Diagnostics wrong = validate(description_); !wrong.empty()) return wrong;
+    find_shared();
     return run_from({description_.root, Affine{}});
   }
 
@@ -72,6 +73,21 @@ class Compiler {
   // The last child first, so that the stack gives them in their order.
   static void push_children(const std::vector<FieldNodeId>& children, const Affine& map, std::vector<Placement>& open) {
     for (auto child = children.rbegin(); child != children.rend(); ++child) open.push_back({*child, map});
+  }
+
+  // Which nodes are placed more than once, by two parents or by one that is. Parents stand behind their children.
+  void find_shared() {
+    shared_.assign(description_.nodes.size(), false);
+    std::vector<bool> seen(description_.nodes.size(), false);
+    for (std::size_t i = description_.nodes.size(); i-- > 0;) {
+      const auto place = [&](FieldNodeId child) {
+        if (seen[child.index()] || shared_[i]) shared_[child.index()] = true;
+        seen[child.index()] = true;
+      };
+      std::visit(Overloaded{[](const Primitive&) {}, [&](const Transform& t) { place(t.of); },
+                            [&](const auto& group) { std::for_each(group.of.begin(), group.of.end(), place); }},
+                 description_.nodes[i].what);
+    }
   }
 
   void report(FieldNodeId node, std::string message, std::string hint) {
@@ -126,7 +142,9 @@ class Compiler {
     PlacedBlend part;
     part.blend = empty_field(blend);
     warn_of_bounded_kernel(blend, part.blend, here.node);
-    const bool baked = here.from_node.similarity().has_value();
+    const bool shared = !shared_.empty() && shared_[here.node.index()];
+    if (shared) part.shape = here.node.index() + 1;
+    const bool baked = !shared && here.from_node.similarity().has_value();
     if (!baked) {
       part.world_from_local = here.from_node;
       part.local_from_world = here.from_node.inverse();
@@ -298,6 +316,7 @@ class Compiler {
 
   const FieldDescription& description_;
   std::set<FieldNodeId> reported_, warned_;
+  std::vector<bool> shared_;  // see find_shared(); empty in a compiler of a subtree
   std::vector<PlacedBlend> parts_;
   std::vector<FieldTree> trees_;
   Diagnostics errors_, warnings_;

@@ -16,10 +16,11 @@
 namespace marrow {
 
 /// Similarities are baked into the primitives, so that both maps are the identity then; any other invertible
-/// affine map stays here, and the blend is in local coordinates.
+/// affine map stays here, and the blend is in local coordinates. So do all maps of a blend that is placed many times.
 struct PlacedBlend {
   BlendField blend;
   Affine world_from_local, local_from_world;
+  std::size_t shape = 0;  ///< parts of one program with the same shape have the same blend; 0: alone
 
   bool is_in_world() const { return world_from_local == Affine{}; }
 };

@@ -6,8 +6,8 @@
 
 #include "field/trace/block.h"
 #include "field/trace/cell_tree.h"
-#include "field/trace/mask_walk.h"
 #include "field/trace/precision.h"
+#include "field/trace/tile_boxes.h"
 
 namespace marrow {
 namespace {
@@ -53,28 +53,36 @@ struct BlendTracer::State {
   Correction correction;
   IsoCurve iso;
   PieceCutter cutter;
-  std::vector<Piece> pieces;
+  SourceTree sources;
   const BlockKernels& kernels;
   NearFar coarse, fine;
-  CellTree tree;
+  LatticeError lattice[2];  // of curves, and of points
   mutable BlockArena arena;
-  mutable std::unique_ptr<std::atomic<const Block*>[]> blocks;
+  CellTree tree;
+  Block::Context context;
 
   State(BlendField f, const TraceOptions& options, const BlockKernels& k)
       : field(std::move(f)),
         correction(correction_of(field)),
         iso(correction, field.alpha),
         cutter(field.degree, iso.critical_field()),
-        pieces(cutter.cut(field)),
+        sources(cutter.cut(field), field.degree),
         kernels(k),
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
         fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
-        tree(pieces, fine, iso, kernels, field.degree, cells_for(pieces.size())),
-        blocks(new std::atomic<const Block*>[tree.cells().size()] {}) {}
-  ~State() {
-    for (std::size_t i = 0; i < tree.cells().size(); ++i) delete blocks[i].load();
-  }
-  Block::Context context() const { return {pieces, tree, cutter, coarse, fine, iso, kernels, field.degree}; }
+        lattice{lattice_error(field.degree), lattice_error(field.degree - 1)},
+        tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
+        context{sources.pieces(),
+                tree,
+                cutter,
+                coarse,
+                fine,
+                lattice,
+                iso,
+                kernels,
+                field.degree,
+                arena,
+                options.polynomials && polynomials_pay(sources.pieces().size())} {}
 };
 
 Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const TraceOptions& options) {
@@ -93,60 +101,105 @@ Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const T
 BlendTracer::BlendTracer(std::unique_ptr<State> state) : state_(std::move(state)) {}
 BlendTracer::~BlendTracer() = default;
 
-std::size_t BlendTracer::cell_count() const { return state_->tree.cells().size(); }
-Box3 BlendTracer::cell_box(std::size_t cell) const { return state_->tree.cells()[cell].box(); }
+std::size_t BlendTracer::tile_count() const { return state_->tree.tile_count(); }
+Box3 BlendTracer::tile_box(std::size_t tile) const { return state_->tree.tile_box(tile); }
 const BlendField& BlendTracer::field() const { return state_->field; }
 
-// Two threads may build the same block; both get the same content, and one copy is kept.
-const Block& BlendTracer::block(std::size_t cell) const {
-  std::atomic<const Block*>& slot = state_->blocks[cell];
-  if (const Block* ready = slot.load(std::memory_order_acquire)) return *ready;
-  auto made = std::make_unique<const Block>(state_->context(), state_->tree.cells()[cell], state_->arena);
-  const Block* expected = nullptr;
-  if (slot.compare_exchange_strong(expected, made.get(), std::memory_order_acq_rel)) return *made.release();
-  return *expected;
+const Block& BlendTracer::block(const Tile& tile, int slot) const {
+  return tile.block(slot).get(
+      [&] { return std::make_unique<const Block>(state_->context, CellTree::cell(tile, slot)); });
 }
 
-std::optional<CellHit> BlendTracer::first_hit(std::size_t cell, const Ray& ray, bool any, CellLog& log) const {
+namespace {
+
+// A ray in the coordinates of a cube, with t counted from its point nearest to the centre of the cube.
+struct RayInCube {
+  double t_near, half;
+  LocalRay local;
+
+  RayInCube(const Ray& ray, const Vec3d& center, double cube_half)
+      : t_near(dot(center - ray.origin, ray.direction)), half(cube_half) {
+    const double scale = 1 / half;
+    const Vec3d start = (ray.origin - center + ray.direction * t_near) * scale;
+    for (std::size_t i = 0; i < 3; ++i) {
+      local.origin[i] = static_cast<float>(start[i]);
+      local.direction[i] = static_cast<float>(ray.direction.vec()[i]);
+    }
+  }
+  float to_local(double t) const { return static_cast<float>((t - t_near) / half); }
+  double to_world(float t) const { return t_near + static_cast<double>(t) * half; }
+};
+
+}  // namespace
+
+std::optional<CellHit> BlendTracer::first_hit(std::size_t tile, const Ray& ray, bool any, CellLog& log) const {
   const Vec3d& direction = ray.direction;
-  const Vec3d inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
-  auto [enter, exit] = clip(cell_box(cell), ray, inverse);
+  auto [enter, exit] = clip(tile_box(tile), ray, {1 / direction.x, 1 / direction.y, 1 / direction.z});
   log.enter = enter;
   if (any) exit = std::min(exit, ray.t_max);
   if (!(enter < exit)) return {};
-  const Block& b = block(cell);
-  if (b.mask() == 0) return {};
-  // Block coordinates, with t counted from the point of the ray nearest to the block's centre.
-  const double t_near = dot(b.center() - ray.origin, ray.direction), scale = 1 / b.half();
-  const Vec3d start = (ray.origin - b.center() + direction * t_near) * scale;
-  LocalRay local;
-  for (std::size_t i = 0; i < 3; ++i) {
-    local.origin[i] = static_cast<float>(start[i]);
-    local.direction[i] = static_cast<float>(direction[i]);
-  }
-  const double begin = (enter - t_near) * scale;
-  MaskWalk walk(b.mask(), start, direction, inverse, begin, (exit - t_near) * scale);
-  const auto world_t = [&](float t) { return t_near + static_cast<double>(t) * b.half(); };
-  for (MaskWalk::Stretch s; walk.next(s);) {
-    const Root root = state_->kernels.first_root(b.view(), local,
-                                                 {.t0 = static_cast<float>(s.begin),
-                                                  .t1 = static_cast<float>(s.end),
-                                                  .any = any,
-                                                  .from_surface = s.begin <= begin && enter <= ray.t_min});
-    log.evaluations += static_cast<std::uint32_t>(root.evaluations);
-    log.undecided = std::min(log.undecided, world_t(root.undecided));
-    if (!root.hit) continue;
-    const double t = std::clamp(world_t(root.t), enter, exit);
-    return t <= ray.t_max ? std::optional(CellHit{t}) : std::nullopt;
-  }
-  return {};
+  const auto hit = hit_in(state_->tree.tile(tile), ray, any, enter, exit, log);
+  return hit && hit->t <= ray.t_max ? hit : std::nullopt;
 }
 
-SurfacePoint BlendTracer::surface_at(std::size_t cell, const Vec3d& position) const {
-  const Block& b = block(cell);
+// Boxes in the ray's order. They overlap by roundings, so that one that begins before a hit may hold a nearer one.
+std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, bool any, double enter, double exit,
+                                           CellLog& log) const {
+  const TileBoxes& boxes = tile.boxes();
+  const TileContent& content = tile.content();
+  const RayInCube cube(ray, tile.place().center, tile.place().half);
+  std::optional<CellHit> best;
+  const auto visit = [&](int slot, float begin, float end) {
+    const double from = std::max(enter, cube.to_world(begin)), to = std::min(exit, cube.to_world(end));
+    const auto hit = content.cells >> slot & 1 ? hit_in(block(tile, slot), ray, any, from, to, log)
+                                               : hit_in(state_->tree.child(tile, slot), ray, any, from, to, log);
+    if (hit && (!best || hit->t < best->t)) best = hit;
+  };
+  const auto behind = [&](float begin) { return best && (any || cube.to_world(begin) > best->t); };
+  // A tight box is worth a block only where many rays come.
+  const auto cell_box = [&](int slot) {
+    return state_->context.polynomials ? block(tile, slot).box() : CellTree::cell(tile, slot).box();
+  };
+  Stretches outer, inner;
+  state_->kernels.stretches(boxes.octants(), cube.local, cube.to_local(enter), cube.to_local(exit), outer);
+  for (int i = 0; i < outer.count; ++i) {
+    const int octant = outer.order[i];
+    if (behind(outer.begin[octant])) break;
+    if (content.large_cells >> octant & 1) {
+      visit(slot_at({octant, 0}), outer.begin[octant], outer.end[octant]);
+      continue;
+    }
+    state_->kernels.stretches(boxes.slots(octant, cell_box), cube.local, outer.begin[octant], outer.end[octant], inner);
+    for (int k = 0; k < inner.count; ++k) {
+      const int slot = inner.order[k];
+      if (behind(inner.begin[slot])) break;
+      visit(slot_at({octant, slot}), inner.begin[slot], inner.end[slot]);
+    }
+  }
+  return best;
+}
+
+std::optional<CellHit> BlendTracer::hit_in(const Block& b, const Ray& ray, bool any, double enter, double exit,
+                                           CellLog& log) const {
+  const RayInCube cube(ray, b.center(), b.half());
+  const Root root = state_->kernels.first_root(
+      b.view(), cube.local,
+      {.t0 = cube.to_local(enter), .t1 = cube.to_local(exit), .any = any, .from_surface = enter <= ray.t_min});
+  log.evaluations += static_cast<std::uint32_t>(root.evaluations);
+  log.undecided = std::min(log.undecided, cube.to_world(root.undecided));
+  if (!root.hit) return {};
+  return CellHit{std::max(cube.to_world(root.t), ray.t_min), &b};
+}
+
+SurfacePoint BlendTracer::surface_at(std::size_t tile, const Vec3d& position) const {
+  const CellTree::Cell cell = state_->tree.nearest_cell(tile, position);
+  return surface_at(block(*cell.tile, cell.slot), position);
+}
+
+SurfacePoint BlendTracer::surface_at(const Block& b, const Vec3d& position) const {
   const Vec3d x = (position - b.center()) / b.half();
   const float local[3] = {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)};
-  const PointField f = state_->kernels.point_field(b.view(), local);
+  const PointField f = state_->kernels.point_field(b.fine().level, state_->field.degree, local);
   const Vec3d gradient = vec(f.gradient), g = vec(f.si_gradient);
   const float* h = f.hessian;
   const auto bend = [&](const Vec3d& v) {  // H v
@@ -164,16 +217,22 @@ SurfacePoint BlendTracer::surface_at(std::size_t cell, const Vec3d& position) co
 
 TraceStatistics BlendTracer::statistics() const {
   TraceStatistics s;
-  s.cells = cell_count();
-  s.bytes = state_->tree.bytes() + state_->pieces.capacity() * sizeof(Piece) + s.cells * sizeof(void*) +
-            state_->arena.bytes();
-  for (std::size_t i = 0; i < s.cells; ++i)
-    if (const Block* b = state_->blocks[i].load()) {
+  const CellTree::Size size = state_->tree.size();
+  s.tiles = tile_count();
+  s.cells = size.cells;
+  s.bytes = size.bytes + state_->sources.bytes() + state_->arena.bytes();
+  state_->tree.for_each_tile(false, [&](const Tile& tile) {
+    for (std::uint64_t left = tile.content().cells; left != 0; left &= left - 1) {
+      const Block* b = tile.block(std::countr_zero(left)).peek();
+      if (b == nullptr) continue;
       ++s.blocks;
       s.bytes += sizeof(Block);
-      s.sources += static_cast<std::size_t>((b->view().fine.curve_groups + b->view().fine.point_groups) * lanes);
-      s.largest_error = std::max(s.largest_error, b->f_error() + b->gradient_error() / state_->field.degree);
+      const Block::Fine* fine = b->fine_if_made();
+      if (fine == nullptr) continue;
+      s.sources += static_cast<std::size_t>((fine->level.curve_groups + fine->level.point_groups) * lanes);
+      s.largest_error = std::max(s.largest_error, fine->f_error + fine->gradient_error / state_->field.degree);
     }
+  });
   return s;
 }
 

@@ -1,7 +1,8 @@
 // Certified ray tracing of one blend, in the blend's own coordinates.
 //
-// The blend's space is divided into cells once; what a cell needs is built when the first ray enters it, and kept.
-// A block's content is a function of its cell alone, so pictures do not depend on the order of rays or on threads.
+// The blend's space is divided into tiles once; a tile is divided into cells, and what a cell needs is built, when the
+// first ray enters it, and kept. All of it is a function of the place alone, so pictures do not depend on the order of
+// rays or on threads.
 #pragma once
 
 #include <atomic>
@@ -20,21 +21,24 @@
 namespace marrow {
 
 class Block;
+class Tile;
 
 struct TraceOptions {
   std::string instruction_set;  ///< "sse4", "avx2", "avx512"; empty: the best of this machine
   /// Aim for the displacement of the traced surface from the exact one, over the local radius. Error budgets come from
   /// it; TraceStatistics::largest_error tells what is certified.
   double tolerance = 1e-5;
+  bool polynomials = true;  ///< false: none to find where surface can be, however many rays may come
 };
 
 struct CellHit {
   double t = 0;
+  const Block* block = nullptr;  ///< that it was found in
 };
 
-/// What a ray did in a cell, hit or not.
+/// What a ray did in a tile, hit or not.
 struct CellLog {
-  double enter = 0;                                            ///< t at which the ray came into the cell
+  double enter = 0;                                            ///< t at which the ray came into the tile
   double undecided = std::numeric_limits<double>::infinity();  ///< t of the first gap too short to decide
   std::uint32_t evaluations = 0;                               ///< of the field
 };
@@ -44,7 +48,9 @@ struct SurfacePoint {
   Vec3d outside;    ///< beside the surface, where the field is certainly below the iso-value
 };
 
+/// Of what has been built so far.
 struct TraceStatistics {
+  std::size_t tiles = 0;  ///< of the first level, divided or not
   std::size_t cells = 0, blocks = 0, sources = 0, bytes = 0;
   double largest_error = 0;  ///< of any block so far: certified bound of the corrected field's error
 };
@@ -56,14 +62,17 @@ class BlendTracer {
   static Result<std::unique_ptr<BlendTracer>> make(BlendField, const TraceOptions&);
   ~BlendTracer();
 
-  std::size_t cell_count() const;
-  Box3 cell_box(std::size_t cell) const;
+  /// Tiles are disjoint, and all surface lies in them.
+  std::size_t tile_count() const;
+  Box3 tile_box(std::size_t tile) const;
 
-  /// The first root inside a cell with t in [ray.t_min, ray.t_max]; t does not depend on ray.t_max.
+  /// The first root inside a tile with t in [ray.t_min, ray.t_max]; t does not depend on ray.t_max.
   /// With `any`, any root.
-  std::optional<CellHit> first_hit(std::size_t cell, const Ray&, bool any, CellLog&) const;
-  /// Normal and starting point at a hit in this cell.
-  SurfacePoint surface_at(std::size_t cell, const Vec3d& position) const;
+  std::optional<CellHit> first_hit(std::size_t tile, const Ray&, bool any, CellLog&) const;
+  /// Normal and starting point at a hit in this tile.
+  SurfacePoint surface_at(std::size_t tile, const Vec3d& position) const;
+  /// The same in the block of a hit.
+  SurfacePoint surface_at(const Block&, const Vec3d& position) const;
 
   const BlendField& field() const;
   TraceStatistics statistics() const;
@@ -71,7 +80,9 @@ class BlendTracer {
  private:
   struct State;
   explicit BlendTracer(std::unique_ptr<State>);
-  const Block& block(std::size_t cell) const;
+  std::optional<CellHit> hit_in(const Tile&, const Ray&, bool any, double enter, double exit, CellLog&) const;
+  std::optional<CellHit> hit_in(const Block&, const Ray&, bool any, double enter, double exit, CellLog&) const;
+  const Block& block(const Tile&, int slot) const;
   std::unique_ptr<State> state_;
 };
 

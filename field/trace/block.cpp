@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 #include "field/trace/source_groups.h"
@@ -91,11 +92,11 @@ struct Level {
   }
 };
 
-Level make_level(const Block::Context& context, const NearFar& precision, std::span<const PieceIndex> near,
-                 const FarField& far, const Vec3d& center, double half) {
-  SourceEmitter emitter(context, precision, center, half);
-  for (const PieceIndex i : near) emitter.emit(context.pieces[i]);
-  Level level{std::move(emitter.curves), std::move(emitter.points), far};
+Level make_level(const Block::Context& context, const NearFar& precision, const Surroundings& around,
+                 const CellTree::Cell& cell) {
+  SourceEmitter emitter(context, precision, cell.center, cell.half);
+  for (const SourceRef ref : around.near) emitter.emit(context.pieces[ref.index()]);
+  Level level{std::move(emitter.curves), std::move(emitter.points), around.far};
   level.far.f_error += emitter.f_error;
   level.far.gradient_error += emitter.gradient_error;
   return level;
@@ -114,29 +115,38 @@ FieldLevel write_level(const Level& level, float* sources, float* far) {
 
 }  // namespace
 
-Block::Block(const Context& context, const CellTree::Cell& cell, BlockArena& arena)
-    : center_(cell.center), half_(cell.half) {
-  const CellTree::Branch& branch = context.tree.branch(cell);
-  FarField far_field = branch.far.of_child(cell.octant);
-  const auto near = context.fine.split(context.pieces, branch.near, center_, half_, far_field);
-  const Level fine = make_level(context, context.fine, near, far_field, center_, half_);
-  // What is far to the fine level is far to the coarse one too.
-  const auto nearest = context.coarse.split(context.pieces, near, center_, half_, far_field);
-  const Level coarse = make_level(context, context.coarse, nearest, far_field, center_, half_);
-  f_error_ = fine.far.f_error;
-  gradient_error_ = fine.far.gradient_error;
-
-  const std::size_t coarse_floats = coarse.source_floats(), fine_floats = fine.source_floats();
-  float* const floats = arena.allocate(coarse_floats + fine_floats + 2 * far_floats);
-  float* const far = floats + coarse_floats + fine_floats;
-  view_ = {.coarse = write_level(coarse, floats, far),
-           .fine = write_level(fine, floats + coarse_floats, far + far_floats),
+Block::Block(const Context& context, const CellTree::Cell& cell)
+    : context_(context), cell_(cell), source_{coarse_,         context.degree,  context.iso,
+                                              context.lattice, context.kernels, context.polynomials} {
+  const Level coarse = make_level(context, context.coarse, context.tree.coarse_surroundings(cell), cell);
+  float* const sources = context.arena.allocate(coarse.source_floats() + far_floats);
+  coarse_ = write_level(coarse, sources, sources + coarse.source_floats());
+  coarse_.f_error = static_cast<float>(1.0001 * coarse.far.f_error);
+  coarse_.g_error = static_cast<float>(1.0001 * coarse.far.gradient_error);
+  view_ = {.octants = nullptr,
+           .coarse = coarse_,
+           .make_fine = [](const void* owner) -> const FieldLevel& {
+             return static_cast<const Block*>(owner)->fine().level;
+           },
+           .owner = this,
            .degree = context.degree,
            .iso = context.iso.view()};
-  // The coarse level is compared with the fine one, so both errors count.
-  view_.coarse.f_error = static_cast<float>(1.0001 * (coarse.far.f_error + f_error_));
-  view_.coarse.g_error = static_cast<float>(1.0001 * (coarse.far.gradient_error + gradient_error_));
-  mask_ = context.kernels.mask(view_);
+  octants_.emplace(source_, Cube{.center = {0, 0, 0}, .half = 1}, 1);
+  view_.octants = &*octants_;
+  for (int i = 0; i < 8; ++i) {
+    if (!(octants_->boxes.present >> i & 1)) continue;
+    const Vec3d center = octant_center(cell.center, cell.half, i), h{cell.half / 2, cell.half / 2, cell.half / 2};
+    box_.include({center - h, center + h});
+  }
+}
+
+const Block::Fine& Block::fine() const {
+  return fine_.get([&] {
+    const Level level = make_level(context_, context_.fine, context_.tree.surroundings(cell_), cell_);
+    float* const sources = context_.arena.allocate(level.source_floats() + far_floats);
+    return std::make_unique<const Fine>(Fine{write_level(level, sources, sources + level.source_floats()),
+                                             level.far.f_error, level.far.gradient_error});
+  });
 }
 
 }  // namespace marrow

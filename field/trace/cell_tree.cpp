@@ -1,199 +1,234 @@
 #include "field/trace/cell_tree.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <numeric>
+#include <bit>
+#include <iterator>
+#include <limits>
+#include <utility>
 
 #include <tbb/parallel_for.h>
 
 #include "field/math/elementary.h"
+#include "field/trace/block.h"
 
 namespace marrow {
-
-Vec3d octant_center(const Vec3d& center, double half, int octant) {
-  const double q = half / 2;
-  return {center.x + (octant & 1 ? q : -q), center.y + (octant & 2 ? q : -q), center.z + (octant & 4 ? q : -q)};
-}
-
 namespace {
 
-enum class Side { Outside, Inside, Mixed };
+// Of the half side of a tile: groups up to this size are passed on to its cells unopened.
+constexpr double largest_group = 0.25, open_all = -1;
 
-// Near pieces of one cube in its coordinates, as the kernel reads them: curves, then points.
-struct alignas(64) PieceGroup {
-  float from[3][lanes], along[3][lanes], inverse_length2[lanes], mass[lanes], low_mass[lanes], radius[lanes],
-      length[lanes];
-};
-static_assert(sizeof(PieceGroup) == floats_per_piece_group * sizeof(float));
-
-class PieceGroups {
- public:
-  PieceGroups(std::span<const Piece> pieces, std::span<const PieceIndex> near, const Vec3d& center, double half,
-              int degree)
-      : center_(center), scale_(1 / half), degree_(degree) {
-    for (const bool points : {false, true}) {
-      int count = 0;
-      for (const PieceIndex i : near)
-        if (pieces[i].is_point() == points) add(pieces[i], count++);
-      (points ? point_groups_ : curve_groups_) = (count + lanes - 1) / lanes;
-    }
+// Squared, of a point outside; 0 inside.
+double distance2(const Box3& box, const Vec3d& p) {
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double gap = std::max({0.0, box.lower[i] - p[i], p[i] - box.upper[i]});
+    sum += gap * gap;
   }
-  const float* data() const { return groups_.empty() ? nullptr : groups_.front().from[0]; }
-  int curve_groups() const { return curve_groups_; }
-  int point_groups() const { return point_groups_; }
-
- private:
-  // Unused lanes stay at mass 0, far away.
-  void add(const Piece& p, int count) {
-    const int lane = count % lanes;
-    if (lane == 0) {
-      groups_.push_back({});
-      for (auto& axis : groups_.back().from) std::fill(axis, axis + lanes, 1e3F);
-    }
-    PieceGroup& g = groups_.back();
-    const Vec3d from = (p.from - center_) * scale_, along = (p.to - p.from) * scale_;
-    const int exponent = degree_ - (p.is_point() ? 1 : 0);
-    const double mass = p.mass * integer_power(scale_, exponent);
-    const double taper = std::min(p.radius_from, p.radius_to) / p.radius, length2 = length_squared(along);
-    for (std::size_t k = 0; k < 3; ++k) {
-      g.from[k][lane] = static_cast<float>(from[k]);
-      g.along[k][lane] = static_cast<float>(along[k]);
-    }
-    g.inverse_length2[lane] = static_cast<float>(length2 > 0 ? 1 / length2 : 0);
-    g.mass[lane] = static_cast<float>(mass);
-    g.low_mass[lane] = static_cast<float>(mass * integer_power(taper, degree_ - 1));
-    g.radius[lane] = static_cast<float>(p.radius * scale_);
-    g.length[lane] = static_cast<float>(p.length * scale_);
-  }
-
-  Vec3d center_;
-  double scale_;
-  int degree_, curve_groups_ = 0, point_groups_ = 0;
-  std::vector<PieceGroup> groups_;
-};
-
-class TreeBuilder {
- public:
-  TreeBuilder(std::span<const Piece> pieces, const NearFar& near_far, const IsoCurve& iso, const BlockKernels& kernels,
-              int degree, const CellTreeSettings& settings)
-      : pieces_(pieces), near_far_(near_far), iso_(iso), kernels_(kernels), degree_(degree), settings_(settings) {}
-
-  CellTree::Branch root() const;
-
-  struct Expansion {
-    std::uint8_t cells = 0;  // octants that are cells
-    std::vector<CellTree::Branch> branches;
-  };
-  Expansion expand(const CellTree::Branch&, int level) const;
-
- private:
-  Side side(const OctantBounds&, const FarField::Bounds&) const;
-  double influence() const;
-
-  std::span<const Piece> pieces_;
-  const NearFar& near_far_;
-  const IsoCurve& iso_;
-  const BlockKernels& kernels_;
-  int degree_;
-  CellTreeSettings settings_;
-};
-
-Side TreeBuilder::side(const OctantBounds& near, const FarField::Bounds& far) const {
-  const double f_far_low = std::max(0.0, far.f_center - far.f_variation);
-  const double f_low = near.f_low + f_far_low;
-  if (!near.touches) {
-    const double f_high = near.f_high + far.f_center + far.f_variation;
-    const double gradient_high = near.gradient_high + length(far.gradient_center) + far.gradient_variation;
-    if (iso_.outside(0, f_high, gradient_high)) return Side::Outside;
-  }
-  return iso_.inside(f_low, 0) ? Side::Inside : Side::Mixed;
-}
-
-// Beyond this distance from every piece the field is below 1 even if all sources stood at that distance.
-double TreeBuilder::influence() const {
-  double curve_mass = 0, point_mass = 0, radius = 0;
-  for (const Piece& p : pieces_) {
-    (p.is_point() ? point_mass : curve_mass) += p.mass;
-    radius = std::max(radius, p.radius);
-  }
-  const auto outside = [&](double d) {
-    const double curves = curve_mass / integer_power(d, degree_), points = point_mass / integer_power(d, degree_ - 1);
-    return iso_.outside(0, curves + points, (degree_ * curves + (degree_ - 1) * points) * radius / d);
-  };
-  double d = radius;
-  while (!outside(d) && d < 1e6 * radius) d *= 1.25;
-  return d;
-}
-
-CellTree::Branch TreeBuilder::root() const {
-  Box3 box;
-  for (const Piece& p : pieces_) box.include(p.box());
-  CellTree::Branch root;
-  // On a coarse binary grid, so that the planes of all cells are exact numbers and neighbours share them.
-  const double needed = max_component(box.size()) / 2 + influence();
-  const double grid = std::ldexp(1.0, std::ilogb(needed) - 10);
-  root.half = std::ceil(needed / grid + 1) * grid;
-  for (std::size_t i = 0; i < 3; ++i) root.center[i] = std::floor(box.center()[i] / grid + 0.5) * grid;
-  root.near.resize(pieces_.size());
-  std::iota(root.near.begin(), root.near.end(), PieceIndex{0});
-  return root;
-}
-
-TreeBuilder::Expansion TreeBuilder::expand(const CellTree::Branch& parent, int level) const {
-  Expansion out;
-  const PieceGroups pieces(pieces_, parent.near, parent.center, parent.half, degree_);
-  std::array<OctantBounds, 8> octants;
-  kernels_.octant_bounds(pieces.data(), pieces.curve_groups(), pieces.point_groups(), degree_, octants.data());
-  const FarField::Bounds parent_far = parent.far.bounds();
-  const double half = parent.half / 2;
-  for (int octant = 0; octant < 8; ++octant) {
-    const OctantBounds& near = octants[static_cast<std::size_t>(octant)];
-    if (side(near, parent_far) != Side::Mixed) continue;
-    FarField far = parent.far.of_child(octant);
-    if (side(near, far.bounds()) != Side::Mixed) continue;
-    const double local_radius = parent.half * near.weighted_radius / near.weight;
-    if (half <= settings_.cell_size * local_radius || level >= settings_.deepest_level) {
-      out.cells = static_cast<std::uint8_t>(out.cells | (1U << octant));
-      continue;
-    }
-    CellTree::Branch branch{
-        .center = octant_center(parent.center, parent.half, octant), .half = half, .near = {}, .far = far};
-    branch.near = near_far_.split(pieces_, parent.near, branch.center, half, branch.far);
-    out.branches.push_back(std::move(branch));
-  }
-  return out;
+  return sum;
 }
 
 }  // namespace
 
-// Level by level: the branches of a level are expanded in parallel, and gathered in their order.
-CellTree::CellTree(std::span<const Piece> pieces, const NearFar& near_far, const IsoCurve& iso,
-                   const BlockKernels& kernels, int degree, const CellTreeSettings& settings) {
-  if (pieces.empty()) return;
-  const TreeBuilder builder(pieces, near_far, iso, kernels, degree, settings);
-  std::vector<Branch> level{builder.root()};
-  for (int depth = 1; !level.empty(); ++depth) {
-    std::vector<TreeBuilder::Expansion> expansions(level.size());
-    tbb::parallel_for(std::size_t{0}, level.size(),
-                      [&](std::size_t i) { expansions[i] = builder.expand(level[i], depth); });
-    std::vector<Branch> next;
-    for (std::size_t i = 0; i < level.size(); ++i) {
-      for (int octant = 0; octant < 8; ++octant)
-        if (expansions[i].cells >> octant & 1)
-          cells_.push_back({octant_center(level[i].center, level[i].half, octant), level[i].half / 2,
-                            static_cast<std::uint32_t>(branches_.size()), static_cast<std::uint8_t>(octant)});
-      if (expansions[i].cells != 0) branches_.push_back(std::move(level[i]));
-      std::move(expansions[i].branches.begin(), expansions[i].branches.end(), std::back_inserter(next));
-    }
-    level = std::move(next);
+// What one cube of the upper levels gives to the next.
+struct CellTree::Level {
+  std::vector<TilePlace> tiles;
+  std::vector<Branch> branches;
+};
+
+void CellTree::expand(const Branch& parent, int depth, Level& out) const {
+  const double half = parent.half / 2, cells_along = integer_power(4, settings_.tile_levels);
+  const auto octants = divider_.octants(parent);
+  for (int i = 0; i < 8; ++i) {
+    const Divider::Octant& octant = octants[static_cast<std::size_t>(i)];
+    if (!octant.mixed) continue;
+    if (half <= cells_along * settings_.cell_size * octant.local_radius || depth + 2 >= settings_.deepest_level)
+      out.tiles.push_back({.center = octant_center(parent.center, parent.half, i), .half = half, .level = depth});
+    else out.branches.push_back(divider_.child(parent, i));
   }
 }
 
-std::size_t CellTree::bytes() const {
-  std::size_t sum = cells_.capacity() * sizeof(Cell) + branches_.capacity() * sizeof(Branch);
-  for (const Branch& b : branches_) sum += b.near.capacity() * sizeof(PieceIndex);
-  return sum;
+// Level by level: the branches of a level are expanded in parallel, and gathered in their order.
+CellTree::CellTree(const SourceTree& sources, const NearFar& coarse, const NearFar& fine, const IsoCurve& iso,
+                   const BlockKernels& kernels, int degree, const CellTreeSettings& settings)
+    : sources_(sources),
+      coarse_(coarse),
+      fine_(fine),
+      divider_(sources, coarse, iso, kernels, degree),
+      settings_(settings) {
+  if (sources.pieces().empty()) return;
+  std::vector<Branch> level{divider_.root()};
+  for (int depth = 1; !level.empty(); ++depth) {
+    std::vector<Level> expansions(level.size());
+    tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) { expand(level[i], depth, expansions[i]); });
+    level.clear();
+    for (Level& e : expansions) {
+      std::move(e.branches.begin(), e.branches.end(), std::back_inserter(level));
+      places_.insert(places_.end(), e.tiles.begin(), e.tiles.end());
+    }
+  }
+  tiles_.reset(new Lazy<Tile>[places_.size()]);
+}
+
+const Tile& CellTree::tile(std::size_t i) const {
+  return tiles_[i].get([&] { return divide(places_[i]); });
+}
+
+const Tile& CellTree::child(const Tile& tile, int slot) const {
+  return tile.child(slot).get([&] {
+    const TilePlace& p = tile.place();
+    return divide({.center = slot_center(p.center, p.half, slot),
+                   .half = p.half / 4,
+                   .level = p.level + 2,
+                   .parent = &tile,
+                   .slot = slot});
+  });
+}
+
+CellTree::Cell CellTree::cell(const Tile& tile, int slot) {
+  const TilePlace& p = tile.place();
+  const int octant = path_of(slot).outer;
+  if (tile.content().large_cells >> octant & 1)
+    return {octant_center(p.center, p.half, octant), p.half / 2, &tile, slot_at({octant, 0}), true};
+  return {slot_center(p.center, p.half, slot), p.half / 4, &tile, slot, false};
+}
+
+// The first of the nearest slots at each level; ties and roundings at faces do not matter, blocks agree there.
+CellTree::Cell CellTree::nearest_cell(std::size_t index, const Vec3d& p) const {
+  const Tile* here = &tile(index);
+  for (;;) {
+    const TilePlace& place = here->place();
+    const TileContent& content = here->content();
+    int best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::uint64_t left = content.cells | content.tiles; left != 0; left &= left - 1) {
+      const int slot = std::countr_zero(left);
+      const bool is_cell = content.cells >> slot & 1;
+      const Box3 box = is_cell ? cell(*here, slot).box()
+                               : TilePlace{slot_center(place.center, place.half, slot), place.half / 4}.box();
+      const double d = distance2(box, p);
+      if (d < least) {
+        least = d;
+        best = slot;
+      }
+    }
+    if (content.cells >> best & 1) return cell(*here, best);
+    here = &child(*here, best);
+  }
+}
+
+Surroundings CellTree::coarse_around(const TilePlace& place) const {
+  Surroundings s;
+  if (place.parent == nullptr) {
+    s.near = coarse_.split(sources_, sources_.roots(), place.center, place.half, largest_group, s.far);
+    return s;
+  }
+  const SlotPath path = path_of(place.slot);
+  s.far = place.parent->coarse().far.of_child(path.outer).of_child(path.inner);
+  s.near = coarse_.split(sources_, place.parent->coarse().near, place.center, place.half, largest_group, s.far);
+  return s;
+}
+
+std::unique_ptr<const Tile> CellTree::divide(const TilePlace& place) const {
+  const Branch whole{place.center, place.half, coarse_around(place)};
+  const auto fits = [&](double half, const Divider::Octant& octant, int level) {
+    return half <= settings_.cell_size * octant.local_radius || level >= settings_.deepest_level;
+  };
+  const auto outer = divider_.octants(whole);
+  TileContent content;
+  for (int i = 0; i < 8; ++i) {
+    if (!outer[static_cast<std::size_t>(i)].mixed) continue;
+    if (fits(place.half / 2, outer[static_cast<std::size_t>(i)], place.level + 1)) {
+      content.large_cells = static_cast<std::uint8_t>(content.large_cells | 1U << i);
+      content.cells |= std::uint64_t{1} << slot_at({i, 0});
+      continue;
+    }
+    const auto inner = divider_.octants(divider_.child(whole, i));
+    for (int k = 0; k < 8; ++k) {
+      const Divider::Octant& slot = inner[static_cast<std::size_t>(k)];
+      if (!slot.mixed) continue;
+      (fits(place.half / 4, slot, place.level + 2) ? content.cells : content.tiles) |= std::uint64_t{1}
+                                                                                       << slot_at({i, k});
+    }
+  }
+  return std::make_unique<const Tile>(place, whole.sources, content);
+}
+
+// What a cube sees, as one of its octants sees it.
+Surroundings CellTree::refined(const NearFar& near_far, const Surroundings& parent, int octant, const Vec3d& center,
+                               double half, double keep) const {
+  Surroundings s{.near = {}, .far = parent.far.of_child(octant)};
+  s.near = near_far.split(sources_, parent.near, center, half, keep, s.far);
+  return s;
+}
+
+const Surroundings& CellTree::fine_around(const Tile& tile) const {
+  return tile.fine().get([&] {
+    const TilePlace& place = tile.place();
+    Surroundings s;
+    if (place.parent != nullptr) {
+      const SlotPath path = path_of(place.slot);
+      s = refined(fine_, fine_around_octant(*place.parent, path.outer), path.inner, place.center, place.half,
+                  largest_group);
+    } else {
+      s.near = fine_.split(sources_, sources_.roots(), place.center, place.half, largest_group, s.far);
+    }
+    return std::make_unique<const Surroundings>(std::move(s));
+  });
+}
+
+const Surroundings& CellTree::fine_around_octant(const Tile& tile, int octant) const {
+  return tile.fine_of_octant(octant).get([&] {
+    const TilePlace& p = tile.place();
+    return std::make_unique<const Surroundings>(
+        refined(fine_, fine_around(tile), octant, octant_center(p.center, p.half, octant), p.half / 2, largest_group));
+  });
+}
+
+Surroundings CellTree::surroundings(const Cell& cell) const {
+  const SlotPath path = path_of(cell.slot);
+  if (cell.large) return refined(fine_, fine_around(*cell.tile), path.outer, cell.center, cell.half, open_all);
+  return refined(fine_, fine_around_octant(*cell.tile, path.outer), path.inner, cell.center, cell.half, open_all);
+}
+
+// The list of a tile is short enough to be asked for each of its cells.
+Surroundings CellTree::coarse_surroundings(const Cell& cell) const {
+  const SlotPath path = path_of(cell.slot);
+  Surroundings s{.near = {}, .far = cell.tile->coarse().far.of_child(path.outer)};
+  if (!cell.large) s.far = s.far.of_child(path.inner);
+  s.near = coarse_.split(sources_, cell.tile->coarse().near, cell.center, cell.half, open_all, s.far);
+  return s;
+}
+
+void CellTree::for_each_tile(bool divide, const std::function<void(const Tile&)>& visit) const {
+  std::vector<const Tile*> open;
+  for (std::size_t i = places_.size(); i-- > 0;)
+    if (const Tile* t = divide ? &tile(i) : tiles_[i].peek()) open.push_back(t);
+  while (!open.empty()) {
+    const Tile& t = *open.back();
+    open.pop_back();
+    visit(t);
+    for (int slot = 63; slot >= 0; --slot)
+      if (t.content().tiles >> slot & 1)
+        if (const Tile* c = divide ? &child(t, slot) : t.child(slot).peek()) open.push_back(c);
+  }
+}
+
+std::vector<CellTree::Cell> CellTree::cells() const {
+  std::vector<Cell> all;
+  for_each_tile(true, [&](const Tile& t) {
+    for (int slot = 0; slot < 64; ++slot)
+      if (t.content().cells >> slot & 1) all.push_back(cell(t, slot));
+  });
+  return all;
+}
+
+CellTree::Size CellTree::size() const {
+  Size s{.cells = 0, .bytes = places_.capacity() * (sizeof(TilePlace) + sizeof(Lazy<Tile>))};
+  for_each_tile(false, [&](const Tile& t) {
+    s.cells += static_cast<std::size_t>(std::popcount(t.content().cells));
+    s.bytes += t.bytes();
+  });
+  return s;
 }
 
 }  // namespace marrow

@@ -1,40 +1,36 @@
 // Space divided into cubes that may hold surface of one blend.
 //
-// An octree from the region of influence down to cells of about the local radius. A cube is dropped when bounds of
-// f and |grad_S f| prove the corrected field below 1 (or above 1) all over it. Each branch keeps the pieces near it
-// and a far field of all others, inherited and refined from its parent, so that a cell's lists are short.
+// From the region of influence down, cubes are halved, and dropped when bounds of f and |grad_S f| prove the corrected
+// field below 1 (or above 1) all over them. This goes at once down to tiles of some cells each; a tile is divided into
+// cells, of about the local radius, when somebody asks for it, and cells ask for the sources around them in their turn.
+// What a tile or a cell holds is a function of its place alone, so that nothing depends on who asks first.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
-#include "field/math/box3.h"
-#include "field/trace/block_kernels.h"
-#include "field/trace/iso_curve.h"
-#include "field/trace/near_far.h"
-#include "field/trace/pieces.h"
+#include "field/trace/divider.h"
+#include "field/trace/tile.h"
 
 namespace marrow {
 
 struct CellTreeSettings {
   double cell_size = 0.5;  ///< half side of a cell over the local radius, at most
+  int tile_levels = 1;     ///< a tile of the first level has 4^tile_levels cells along its side
   int deepest_level = 40;
 };
 
+/// Safe to use from many threads. Refers to what it is made of.
 class CellTree {
  public:
-  struct Branch {
-    Vec3d center;
-    double half = 0;
-    std::vector<PieceIndex> near;
-    FarField far;
-  };
-  /// One of the eight half-sized cubes of a branch. Its planes are exactly those of its neighbours.
+  /// A cube to be traced. Its planes are exactly those of its neighbours.
   struct Cell {
     Vec3d center;
     double half;
-    std::uint32_t branch;
-    std::uint8_t octant;
+    const Tile* tile;
+    int slot;
+    bool large;  ///< a whole octant of its tile
 
     Box3 box() const {
       const Vec3d h{half, half, half};
@@ -42,18 +38,53 @@ class CellTree {
     }
   };
 
-  CellTree(std::span<const Piece>, const NearFar&, const IsoCurve&, const BlockKernels&, int degree,
-           const CellTreeSettings&);
+  /// `coarse` divides, `fine` is what cells are traced with.
+  CellTree(const SourceTree&, const NearFar& coarse, const NearFar& fine, const IsoCurve&, const BlockKernels&,
+           int degree, const CellTreeSettings&);
 
-  std::span<const Cell> cells() const { return cells_; }
-  const Branch& branch(const Cell& c) const { return branches_[c.branch]; }
-  std::size_t bytes() const;
+  /// Tiles of the first level: disjoint, and all surface is in them.
+  std::size_t tile_count() const { return places_.size(); }
+  Box3 tile_box(std::size_t i) const { return places_[i].box(); }
+  const Tile& tile(std::size_t i) const;
+  const Tile& child(const Tile&, int slot) const;
+  static Cell cell(const Tile&, int slot);
+
+  /// The cell of a tile of the first level that holds a point, or of those that do not the nearest. Precondition: a ray
+  /// has hit something in this tile.
+  Cell nearest_cell(std::size_t tile, const Vec3d&) const;
+
+  /// The sources around a cell, to the errors of `fine`; all near ones are pieces.
+  Surroundings surroundings(const Cell&) const;
+  /// The same to the errors of `coarse`.
+  Surroundings coarse_surroundings(const Cell&) const;
+
+  /// Of all tiles made so far, or, when `divide`, of all there are.
+  void for_each_tile(bool divide, const std::function<void(const Tile&)>&) const;
+  /// All cells; divides what is not divided yet.
+  std::vector<Cell> cells() const;
+  /// Cells and bytes of what has been made so far.
+  struct Size {
+    std::size_t cells = 0, bytes = 0;
+  };
+  Size size() const;
 
  private:
-  std::vector<Branch> branches_;  // those with cells
-  std::vector<Cell> cells_;
-};
+  struct Level;
+  void expand(const Branch&, int depth, Level& out) const;
+  std::unique_ptr<const Tile> divide(const TilePlace&) const;
+  Surroundings coarse_around(const TilePlace&) const;
+  const Surroundings& fine_around(const Tile&) const;
+  const Surroundings& fine_around_octant(const Tile&, int octant) const;
+  Surroundings refined(const NearFar&, const Surroundings&, int octant, const Vec3d& center, double half,
+                       double keep) const;
 
-Vec3d octant_center(const Vec3d& center, double half, int octant);
+  const SourceTree& sources_;
+  const NearFar& coarse_;
+  const NearFar& fine_;
+  Divider divider_;
+  CellTreeSettings settings_;
+  std::vector<TilePlace> places_;
+  std::unique_ptr<Lazy<Tile>[]> tiles_;
+};
 
 }  // namespace marrow

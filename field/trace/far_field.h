@@ -33,7 +33,8 @@ using Polynomial = std::array<double, monomial_count>;
 /// The expansion is the Gegenbauer series, |x - r|^-m = sum_k C_k^(m/2)(cos) |x|^k |r|^-(m+k). Its terms are
 /// (x.r)^k |x|^(2j) |r|^-(m+2k+2j) times a constant, so the moments needed are
 ///   sum w r^(tensor k) |r|^-(m+2k+2j)   for j = 0, k = 0..5;  j = 1, k = 0..3;  j = 2, k = 0, 1
-/// (56 + 20 + 4 numbers), here without the constants, which are applied on the way.
+/// (56 + 20 + 4 numbers), here without the constants, which are applied on the way. With y = r / |r|^2 and the field
+/// f_i = w |r|^-m of a source at the origin they are sums of f_i y^(tensor k) |y|^(2j).
 inline constexpr std::size_t moment_count = 56 + 20 + 4;
 using Moments = std::array<float, moment_count>;
 void add_moments(const Moments& f, const Moments& potential, int exponent, struct FarField&);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "field/math/elementary.h"
-#include "field/trace/block_kernels.h"
+#include "field/trace/near_groups.h"
 #include "field/trace/source_groups.h"
 
 namespace marrow {
@@ -22,19 +22,6 @@ NearFar::NearFar(int degree, ErrorBudget budget, const BlockKernels& kernels)
 NearFar::Remainders NearFar::remainders(bool point, double q) const {
   const auto i = static_cast<std::size_t>(q / largest_ratio * table_size) + 1;
   return (point ? point_ : curve_)[std::min<std::size_t>(i, table_size)];
-}
-
-bool NearFar::is_far(const Piece& piece, double distance, double cube_radius, FarField& far) const {
-  if (cube_radius > largest_ratio * distance) return false;
-  const Remainders r = remainders(piece.is_point(), cube_radius / distance);
-  const int exponent = degree_ - (piece.is_point() ? 1 : 0);
-  const double field = piece.mass / integer_power(distance, exponent);
-  const double field_error = field * r.field;
-  const double gradient_error = field * exponent * piece.radius / distance * r.gradient;
-  if (field_error > budget_.field || gradient_error > budget_.gradient) return false;
-  far.f_error += field_error;
-  far.gradient_error += gradient_error;
-  return true;
 }
 
 NearFar::Rule NearFar::rule_for(const Piece& piece, double distance, double share) const {
@@ -61,39 +48,147 @@ void add_nodes(const Piece& piece, int count, const Vec3d& center, double half, 
   }
 }
 
-// Sums in float: their error, a millionth of what they add, counts.
-void NearFar::fold(const SourceGroups& sources, int exponent, FarField& far) const {
-  if (sources.group_count() == 0) return;
+// The far groups of one cube, inverted: at y = r / |r|^2 with the field f_i that each has at the centre, so that
+// moments are sums of f_i y^(tensor k) |y|^(2j), in which nothing can overflow, however far the source.
+struct NearFar::FarGroups {
+  Vec3d center;
+  double half;
+  FarField& far;
+  SourceGroups curves{}, points{};
+
+  void add(const SourceNode& group) {
+    const Vec3d r = group.center - center;
+    const double inverse2 = 1 / length_squared(r);
+    const int m = group.exponent;
+    const double field = group.mass * integer_power(m % 2 ? std::sqrt(inverse2) : inverse2, m % 2 ? m : m / 2);
+    (group.is_point ? points : curves).add(r * (inverse2 * half), field, group.tau_mass / group.mass / half);
+  }
+};
+
+// Sums in float: their error counts.
+void NearFar::fold(const FarGroups& groups) const {
+  for (const bool point : {false, true}) {
+    const SourceGroups& sources = point ? groups.points : groups.curves;
+    if (sources.group_count() == 0) continue;
+    FarField& far = groups.far;
+    Moments f, potential;
+    kernels_.far_moments(sources.data(), sources.group_count(), f.data(), potential.data());
+    add_moments(f, potential, degree_ - (point ? 1 : 0), far);
+    const double first = length({potential[1], potential[2], potential[3]});
+    far.f_error += sum_rounding() * static_cast<double>(f[0]);
+    far.gradient_error += sum_rounding() * 4 * degree_ * std::max(first, static_cast<double>(f[0]));
+  }
+}
+
+// Coordinates relative to the cube are off by some 1e-7 of the distance of their source, whose field falls with the
+// power n of that, the gradient with n + 1.
+double NearFar::sum_rounding() const { return 4e-7 * (degree_ + 2); }
+
+// All of a group at its centre of mass c. With K = d^-m the field is sum w K(q), and sum w (q - c) = 0, so that
+//   |f - W K(c)| <= 1/2 sum w |q-c|^2 max |grad^2 K|,   |grad^2 K| <= m (m+1) D^-(m+2),
+// D the least distance between the cube and the ball of the group. The gradient of the potential sum w tau K loses
+// |sum w tau (q - c)| m (m+1) D^-(m+2) and 1/2 sum w tau |q-c|^2 m (m+1) (m+2) D^-(m+3). To this comes the remainder B5
+// of a point source at c.
+bool NearFar::is_far(const SourceNode& group, double distance, double cube_radius, FarField& far) const {
+  const double clear = distance - cube_radius - group.radius;
+  if (cube_radius > largest_ratio * distance || !(clear > 0)) return false;
+  const Remainders r = remainders(group.is_point, cube_radius / distance);
+  const double m = group.exponent;
+  const double bend = m * (m + 1) / integer_power(clear, group.exponent + 2);
+  const double raised = 1 / integer_power(distance, group.exponent);
+  const double field_error = group.mass * raised * r.field + 0.5 * group.spread * bend;
+  if (field_error > budget_.field) return false;
+  const double gradient_error = group.tau_mass * raised * m / distance * r.gradient +
+                                bend * (length(group.tau_shift) + 0.5 * (m + 2) * group.tau_spread / clear);
+  if (gradient_error > budget_.gradient) return false;
+  far.f_error += field_error;
+  far.gradient_error += gradient_error;
+  return true;
+}
+
+bool NearFar::add_if_far(const SourceNode& group, FarGroups& groups) const {
+  const double d = length(group.center - groups.center);
+  if (!is_far(group, d, groups.half * std::sqrt(3.0), groups.far)) return false;
+  groups.add(group);
+  return true;
+}
+
+FarQuery NearFar::query(bool points) const {
+  const int m = degree_ - (points ? 1 : 0);
+  const auto binomial5 = [](int top) {
+    return static_cast<float>(top * (top - 1) * (top - 2) / 6 * (top - 3) / 4 * (top - 4) / 5);
+  };
+  FarQuery q{.center = {0, 0, 0},
+             .radius = 1.732052F,  // sqrt(3), rounded up
+             .half = 1,
+             .exponent = m,
+             .points = points,
+             .field_budget = static_cast<float>(budget_.field),
+             .gradient_budget = static_cast<float>(budget_.gradient),
+             .field_series = binomial5(m + 4),
+             .gradient_series = binomial5(m + 5)};
+  for (int nodes = 1; nodes <= 3; ++nodes) {
+    const GaussError::Bound c = quadrature_.constants(nodes);
+    q.field_rule[nodes] = static_cast<float>(c.field);
+    q.gradient_rule[nodes] = static_cast<float>(c.gradient);
+  }
+  return q;
+}
+
+void NearFar::add_sums(const FarSums& sums, int exponent, FarField& far) const {
   Moments f, potential;
-  kernels_.far_moments(sources.data(), sources.group_count(), exponent, f.data(), potential.data());
-  const double before = far.f[0];
+  std::copy_n(sums.f, moment_count, f.begin());
+  std::copy_n(sums.potential, moment_count, potential.begin());
   add_moments(f, potential, exponent, far);
-  constexpr double rounding = 1e-6;
-  far.f_error += rounding * (far.f[0] - before);
-  far.gradient_error += rounding * (far.f[0] - before);
+  far.f_error += static_cast<double>(sums.f_error) + sum_rounding() * static_cast<double>(sums.field);
+  far.gradient_error += static_cast<double>(sums.g_error) + sum_rounding() * static_cast<double>(sums.gradient);
 }
 
 std::vector<PieceIndex> NearFar::split(std::span<const Piece> pieces, std::span<const PieceIndex> candidates,
                                        const Vec3d& center, double half, FarField& far) const {
-  constexpr double quadrature_share = 0.25;
-  const double cube_radius = half * std::sqrt(3.0);
   std::vector<PieceIndex> near;
-  near.reserve(candidates.size());
-  SourceGroups curves, points;
-  for (const PieceIndex i : candidates) {
-    const Piece& piece = pieces[i];
-    const double d = distance(piece, center);
-    if (!is_far(piece, d, cube_radius, far)) {
-      near.push_back(i);
+  for (const bool points : {false, true}) {
+    const NearGroups groups(pieces, candidates, points, center, half);
+    if (groups.count() == 0) continue;
+    std::vector<unsigned short> near_lanes(static_cast<std::size_t>(groups.count()));
+    FarSums sums;
+    kernels_.far_split(groups.data(), groups.count(), query(points), near_lanes.data(), sums);
+    add_sums(sums, degree_ - (points ? 1 : 0), far);
+    std::size_t lane = 0;
+    for (const PieceIndex i : candidates) {
+      if (pieces[i].is_point() != points) continue;
+      if (near_lanes[lane / lanes] >> lane % lanes & 1) near.push_back(i);
+      ++lane;
+    }
+  }
+  return near;
+}
+
+std::vector<SourceRef> NearFar::split(const SourceTree& tree, std::span<const SourceRef> candidates,
+                                      const Vec3d& center, double half, double keep, FarField& far) const {
+  std::vector<SourceRef> near, open(candidates.rbegin(), candidates.rend());
+  std::vector<PieceIndex> pieces;
+  FarGroups groups{center, half, far};
+  while (!open.empty()) {
+    const SourceRef here = open.back();
+    open.pop_back();
+    if (here.is_piece()) {
+      pieces.push_back(here.index());
       continue;
     }
-    const Rule rule = rule_for(piece, d - cube_radius, quadrature_share);
-    far.f_error += rule.error.field;
-    far.gradient_error += rule.error.gradient;
-    add_nodes(piece, rule.nodes, center, half, degree_, piece.is_point() ? points : curves);
+    const SourceNode& node = tree.node(here.index());
+    if (add_if_far(node, groups)) continue;
+    if (node.radius <= keep * half) {
+      near.push_back(here);
+    } else if (node.is_leaf()) {
+      for (std::uint32_t i = node.begin; i < node.end; ++i) pieces.push_back(i);
+    } else {
+      open.push_back(SourceRef::node(node.right));
+      open.push_back(SourceRef::node(here.index() + 1));
+    }
   }
-  fold(curves, degree_, far);
-  fold(points, degree_ - 1, far);
+  fold(groups);
+  for (const PieceIndex i : split(tree.pieces(), pieces, center, half, far)) near.push_back(SourceRef::piece(i));
   return near;
 }
 

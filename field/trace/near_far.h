@@ -1,34 +1,48 @@
-// Which pieces a cube must list one by one, and which it may fold into its far field.
+// Which sources a cube must list, and which it may fold into its far field.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "field/trace/block_kernels.h"
 #include "field/trace/far_field.h"
 #include "field/trace/pieces.h"
 #include "field/trace/quadrature.h"
+#include "field/trace/source_tree.h"
 
 namespace marrow {
 
-struct BlockKernels;
 class SourceGroups;
 
 using PieceIndex = std::uint32_t;
 
-/// The share of the total error that one piece may cause in f and in |grad_S f|.
+/// All sources as one cube sees them: a list of the near ones, and polynomials for the rest.
+struct Surroundings {
+  std::vector<SourceRef> near;
+  FarField far;
+};
+
+/// The share of the total error that one piece, or one group of pieces, may cause in f and in |grad_S f|.
 struct ErrorBudget {
   double field, gradient;
 };
 
-/// Splits at certified errors: the Taylor remainder B5 of tracing.md and the quadrature bound of GaussError.
+/// Splits at certified errors: the Taylor remainder B5 of tracing.md and the quadrature bound of GaussError, and for a
+/// group that stands for its pieces the second moments that its centre of mass neglects.
 class NearFar {
  public:
   NearFar(int degree, ErrorBudget, const BlockKernels&);
 
-  /// Adds the far ones of `candidates` to `far` (in the coordinates of the cube) and returns the near ones, in order.
+  /// Adds the far ones of `candidates` to `far` (in the coordinates of the cube) and returns the near ones: curves,
+  /// then points, in their order.
   std::vector<PieceIndex> split(std::span<const Piece>, std::span<const PieceIndex> candidates, const Vec3d& center,
                                 double half, FarField& far) const;
+
+  /// The same for sources of a tree; groups are opened until they are far, or no larger than `keep` times `half`.
+  /// Adds the far ones to `far` and returns the near ones, groups first.
+  std::vector<SourceRef> split(const SourceTree&, std::span<const SourceRef> candidates, const Vec3d& center,
+                               double half, double keep, FarField& far) const;
 
   using Rule = GaussError::Rule;
   /// The smallest rule whose error at this distance is within `share` of the budget, else the largest.
@@ -39,8 +53,13 @@ class NearFar {
     double field, gradient;
   };
   Remainders remainders(bool point, double q) const;
-  bool is_far(const Piece&, double distance, double cube_radius, FarField& far) const;
-  void fold(const SourceGroups&, int exponent, FarField&) const;
+  struct FarGroups;
+  bool is_far(const SourceNode&, double distance, double cube_radius, FarField& far) const;
+  bool add_if_far(const SourceNode&, FarGroups&) const;
+  void fold(const FarGroups&) const;
+  FarQuery query(bool points) const;
+  void add_sums(const FarSums&, int exponent, FarField&) const;
+  double sum_rounding() const;
 
   static constexpr int table_size = 256;
   static constexpr double largest_ratio = 0.5;  ///< of cube radius to distance: beyond it nothing is far

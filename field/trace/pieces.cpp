@@ -47,6 +47,7 @@ Piece PieceCutter::segment_piece(const Vec3d& from, const Vec3d& to, double radi
   p.length = length(to - from);
   p.radius = std::max(radius_from, radius_to);
   p.mass = p.length * integer_power(p.radius, degree_ - 1) / normalisation_;
+  p.share = p.length / (normalisation_ * p.radius);
   return p;
 }
 
@@ -86,6 +87,7 @@ std::vector<Piece> PieceCutter::cut(const BlendField& blend) const {
     Piece p{.from = s.at, .to = s.at, .radius_from = s.radius, .radius_to = s.radius};
     p.radius = s.radius;
     p.mass = integer_power(s.radius, degree_ - 1);
+    p.share = 1;
     // (tau/d)^(n-1) > f_critical
     p.inside_distance = s.radius * pow(critical_field_ * 1.001, -1.0 / (degree_ - 1));
     p.primitive = static_cast<std::uint32_t>(i);

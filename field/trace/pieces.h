@@ -18,6 +18,7 @@ struct Piece {
   double radius_from = 0, radius_to = 0;
   double length = 0;            ///< 0 for a point
   double mass = 0;              ///< f <= mass d^-exponent at distance d: L tau_max^(n-1) / N, or tau^(n-1) for a point
+  double share = 0;             ///< mass / radius^exponent, the exponent being n - 1 for a point: L / (N radius), or 1
   double radius = 0;            ///< the larger of the two
   double inside_distance = 0;   ///< every p nearer than this to the piece is inside, by its own field alone
   std::uint32_t primitive = 0;  ///< index into the blend's segments, or its points

@@ -34,6 +34,10 @@ class GaussError {
   };
   /// `mass` = L tau_max^(n-1) / N, `largest_radius` = tau_max, `slope` = |d tau / ds|.
   Bound bound(int nodes, double mass, double largest_radius, double slope, double length, double distance) const;
+  /// What bound() multiplies with powers of lengths.
+  Bound constants(int nodes) const {
+    return {field_[static_cast<std::size_t>(nodes)], gradient_[static_cast<std::size_t>(nodes)]};
+  }
   struct Rule {
     int nodes = 1;
     Bound error{};

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,27 +52,37 @@ class Builder {
       problems.insert(problems.end(), program.why().begin(), program.why().end());
       return;
     }
+    std::map<std::size_t, const FieldSolid*> placed;  // by shape
     for (const PlacedBlend& part : program->parts()) {
       // The tracer of blends knows the inverse kernel along lines; the general one takes the others.
-      if (untraceable_part(part.blend).empty())
-        add(FieldSolid::make(part, object.material, {.instruction_set = options_.isa}), object, id);
-      else add(TreeSolid::make(tree_of(part), object.material), object, id);
+      if (!untraceable_part(part.blend).empty()) {
+        add(TreeSolid::make(tree_of(part), object.material), object, id);
+      } else if (const auto same = placed.find(part.shape); part.shape != 0 && same != placed.end()) {
+        solids.push_back({same->second->placed_again(part, object.material), id});
+      } else if (const FieldSolid* made =
+                     add(FieldSolid::make(part, object.material, {.instruction_set = options_.isa}), object, id)) {
+        placed[part.shape] = made;
+      }
     }
     for (const FieldTree& tree : program->trees()) add(TreeSolid::make(tree, object.material), object, id);
   }
 
-  template <class SolidPointer>
-  void add(Result<SolidPointer> solid, const ObjectDescription& object, ObjectId id) {
+  // Null for what cannot be traced.
+  template <class SolidType>
+  const SolidType* add(Result<std::unique_ptr<SolidType>> solid, const ObjectDescription& object, ObjectId id) {
     if (solid) {
+      const SolidType* made = solid->get();
       solids.push_back({std::move(*solid), id});
-      return;
+      return made;
     }
     for (Diagnostic d : solid.why()) {
       if (d.where.line == 0) d.where = object.where;
       problems.push_back(std::move(d));
     }
+    return nullptr;
   }
 
+ private:
   const SceneDescription& scene_;
   const SurfaceOptions& options_;
 };
@@ -130,12 +142,15 @@ SurfaceReport report(const Surfaces& surfaces) {
   const auto* embree = dynamic_cast<const EmbreeSurfaces*>(&surfaces);
   if (embree == nullptr) return r;
   r.build_seconds = embree->build_seconds;
+  std::set<const BlendTracer*> counted;
   for (const PlacedSolid& p : embree->solids()) {
     r.primitives += p.solid->primitive_count();
-    r.bytes += p.solid->bytes();
     const auto* field = dynamic_cast<const FieldSolid*>(p.solid.get());
+    if (field != nullptr && !counted.insert(&field->tracer()).second) continue;
+    r.bytes += p.solid->bytes();
     if (field == nullptr) continue;
     const TraceStatistics s = field->statistics();
+    r.tiles += s.tiles;
     r.cells += s.cells;
     r.blocks += s.blocks;
     r.largest_error = std::max(r.largest_error, s.largest_error);

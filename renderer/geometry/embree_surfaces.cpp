@@ -25,6 +25,7 @@ struct Query : RTCIntersectContext {
   double best = std::numeric_limits<double>::infinity();
   const Solid* solid = nullptr;
   unsigned geometry = RTC_INVALID_GEOMETRY_ID, element = 0;
+  const void* place = nullptr;
   double undecided = std::numeric_limits<double>::infinity();
   std::vector<ElementLog>* visits = nullptr;  // of a thread, reused from ray to ray
 
@@ -69,6 +70,7 @@ void intersect_callback(const RTCIntersectFunctionNArguments* a) {
   q.solid = &solid;
   q.geometry = a->geomID;
   q.element = a->primID;
+  q.place = log.place;
   auto* rayhit = reinterpret_cast<RTCRayHit*>(a->rayhit);
   rayhit->ray.tfar = embree_t(q, *t);
   rayhit->hit.geomID = a->geomID;
@@ -192,7 +194,7 @@ std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray, RayRecord& r
     hit.t = q.best;
     hit.position = ray.at(q.best);
     hit.object = solids_[q.geometry].object;
-    q.solid->describe(q.element, ray, hit);
+    q.solid->describe(q.element, q.place, ray, hit);
     return hit;
   }
   hit.t = plane_t;

@@ -12,7 +12,11 @@ Result<std::unique_ptr<FieldSolid>> FieldSolid::make(PlacedBlend part, MaterialI
       new FieldSolid(std::move(*tracer), part.world_from_local, part.local_from_world, of_object));
 }
 
-FieldSolid::FieldSolid(std::unique_ptr<BlendTracer> tracer, const Affine& world_from_local,
+std::unique_ptr<FieldSolid> FieldSolid::placed_again(const PlacedBlend& part, MaterialId of_object) const {
+  return std::unique_ptr<FieldSolid>(new FieldSolid(tracer_, part.world_from_local, part.local_from_world, of_object));
+}
+
+FieldSolid::FieldSolid(std::shared_ptr<const BlendTracer> tracer, const Affine& world_from_local,
                        const Affine& local_from_world, MaterialId of_object)
     : tracer_(std::move(tracer)),
       world_from_local_(world_from_local),
@@ -20,7 +24,7 @@ FieldSolid::FieldSolid(std::unique_ptr<BlendTracer> tracer, const Affine& world_
       in_world_(world_from_local == Affine{}),
       material_(of_object) {}
 
-Box3 FieldSolid::element_box(std::size_t element) const { return to_world(tracer_->cell_box(element)); }
+Box3 FieldSolid::element_box(std::size_t element) const { return to_world(tracer_->tile_box(element)); }
 
 // The skeletons and one radius: surfaces bulge further only where skeletons are dense.
 Box3 FieldSolid::extent() const {
@@ -53,12 +57,13 @@ std::optional<double> FieldSolid::hit(std::size_t element, const Ray& ray, bool 
   const auto found = tracer_->first_hit(element, local, any, cell);
   log = {cell.enter / stretch, cell.undecided / stretch, cell.evaluations};
   if (!found) return {};
+  log.place = found->block;
   return found->t / stretch;
 }
 
-void FieldSolid::describe(std::size_t element, const Ray&, SurfaceHit& hit) const {
+void FieldSolid::describe(std::size_t, const void* place, const Ray&, SurfaceHit& hit) const {
   const Vec3d p = in_world_ ? hit.position : local_from_world_.point(hit.position);
-  const SurfacePoint surface = tracer_->surface_at(element, p);
+  const SurfacePoint surface = tracer_->surface_at(*static_cast<const Block*>(place), p);
   hit.normal = in_world_ ? surface.normal : normalize(local_from_world_.transposed(surface.normal));
   hit.outside = in_world_ ? surface.outside : world_from_local_.point(surface.outside);
   const MaterialId own = strongest_material(tracer_->field(), p);

@@ -1,4 +1,4 @@
-// One placed blend as a solid: its elements are the cells of its tracer.
+// One placed blend as a solid: its elements are the tiles of its tracer.
 #pragma once
 
 #include <memory>
@@ -13,18 +13,21 @@ namespace marrow {
 class FieldSolid final : public Solid {
  public:
   static Result<std::unique_ptr<FieldSolid>> make(PlacedBlend, MaterialId of_object, const TraceOptions&);
+  /// The same blend at another place, or with another material; the tracer is shared.
+  std::unique_ptr<FieldSolid> placed_again(const PlacedBlend&, MaterialId of_object) const;
 
-  std::size_t element_count() const override { return tracer_->cell_count(); }
+  std::size_t element_count() const override { return tracer_->tile_count(); }
   Box3 element_box(std::size_t) const override;
   Box3 extent() const override;
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
-  void describe(std::size_t, const Ray&, SurfaceHit&) const override;
+  void describe(std::size_t, const void* place, const Ray&, SurfaceHit&) const override;
   std::size_t primitive_count() const override { return tracer_->field().size(); }
   std::size_t bytes() const override { return tracer_->statistics().bytes; }
+  const BlendTracer& tracer() const { return *tracer_; }
   TraceStatistics statistics() const { return tracer_->statistics(); }
 
  private:
-  FieldSolid(std::unique_ptr<BlendTracer>, const Affine& world_from_local, const Affine& local_from_world,
+  FieldSolid(std::shared_ptr<const BlendTracer>, const Affine& world_from_local, const Affine& local_from_world,
              MaterialId of_object);
   /// The ray in the blend's coordinates; t there is `stretch` times t here.
   struct LocalRay {
@@ -34,7 +37,7 @@ class FieldSolid final : public Solid {
   LocalRay to_local(const Ray&) const;
   Box3 to_world(const Box3&) const;
 
-  std::unique_ptr<BlendTracer> tracer_;
+  std::shared_ptr<const BlendTracer> tracer_;
   Affine world_from_local_, local_from_world_;
   bool in_world_;
   MaterialId material_;

@@ -45,7 +45,7 @@ std::optional<double> MeshSolid::hit(std::size_t element, const Ray& ray, bool, 
   return t;
 }
 
-void MeshSolid::describe(std::size_t element, const Ray& ray, SurfaceHit& hit) const {
+void MeshSolid::describe(std::size_t element, const void*, const Ray& ray, SurfaceHit& hit) const {
   const auto [a, b, c] = corners(element);
   const UnitVec3 n = normalize(cross(b - a, c - a));
   hit.normal = dot(n, ray.direction) <= 0 ? n : -n;

@@ -18,6 +18,7 @@ struct ElementLog {
   double enter = 0;                                            ///< where the ray came into the element
   double undecided = std::numeric_limits<double>::infinity();  ///< the first place that could not be decided
   std::uint32_t evaluations = 0;
+  const void* place = nullptr;  ///< of a hit in the element, for describe()
 };
 
 /// Immutable; safe to use from many threads. All rays and points are in world coordinates.
@@ -30,8 +31,8 @@ class Solid {
   virtual Box3 extent() const = 0;
   /// t of the first hit in an element, in [ray.t_min, ray.t_max] but not depending on t_max; any hit with `any`.
   virtual std::optional<double> hit(std::size_t element, const Ray&, bool any, ElementLog&) const = 0;
-  /// Fills normal, outside and material of a hit whose position is known.
-  virtual void describe(std::size_t element, const Ray&, SurfaceHit&) const = 0;
+  /// Fills normal, outside and material of a hit whose position is known; `place` as hit() told it.
+  virtual void describe(std::size_t element, const void* place, const Ray&, SurfaceHit&) const = 0;
   virtual std::size_t primitive_count() const = 0;
   virtual std::size_t bytes() const = 0;
 };

@@ -17,13 +17,13 @@ namespace marrow::test {
 
 class AllCells {
  public:
-  explicit AllCells(BlendField field, const std::string& instruction_set = "") {
+  explicit AllCells(BlendField field, const std::string& instruction_set = "", bool polynomials = true) {
     expect_far_space_is_dropped(field);
-    auto made = BlendTracer::make(std::move(field), {.instruction_set = instruction_set});
+    auto made = BlendTracer::make(std::move(field), {.instruction_set = instruction_set, .polynomials = polynomials});
     if (!made) throw std::runtime_error("no tracer");
     tracer_ = std::move(*made);
-    for (std::size_t i = 0; i < tracer_->cell_count(); ++i) {
-      boxes_.push_back(tracer_->cell_box(i));
+    for (std::size_t i = 0; i < tracer_->tile_count(); ++i) {
+      boxes_.push_back(tracer_->tile_box(i));
       bounds_.include(boxes_.back());
     }
   }

@@ -1,7 +1,9 @@
-// Blocks: both levels are within their stated errors of the exact field, and masks hide no surface.
+// Blocks: both levels and the polynomials of patches are within their stated errors of the exact field, and patches
+// leave out no surface.
 #include "field/trace/block.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -19,11 +21,9 @@ std::vector<Setting> settings() {
   return all;
 }
 
-PointField field_of(const Stage& stage, const FieldLevel& level, const Block& block, const Vec3d& x) {
-  BlockView view = block.view();
-  view.fine = level;
+PointField field_of(const Stage& stage, const FieldLevel& level, const Vec3d& x) {
   const float local[3] = {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)};
-  return stage.kernels.point_field(view, local);
+  return stage.kernels.point_field(level, stage.field.degree, local);
 }
 
 struct Shares {
@@ -58,15 +58,15 @@ TEST(Block, LevelsAreWithinTheirStatedErrors) {
     const Stage stage(random_scene(random, s, random.whole(2, 12)));
     for (int i = 0; i < 40; ++i, ++blocks) {
       const Block block =
-          stage.block(static_cast<std::size_t>(random.whole(0, static_cast<int>(stage.tree.cells().size()) - 1)));
-      const BlockView& view = block.view();
-      largest_fine = std::max(largest_fine, block.f_error() + block.gradient_error() / s.degree);
+          stage.block(static_cast<std::size_t>(random.whole(0, static_cast<int>(stage.cells.size()) - 1)));
+      const Block::Fine& traced = block.fine();
+      const FieldLevel& rough = block.view().coarse;
+      largest_fine = std::max(largest_fine, traced.f_error + traced.gradient_error / s.degree);
       for (int k = 0; k < 25; ++k) {
         const Vec3d x = random.vector(1), p = block.center() + x * block.half();
-        compare(stage, field_of(stage, view.fine, block, x), p, block.half(), block.f_error(), block.gradient_error(),
-                fine);
-        compare(stage, field_of(stage, view.coarse, block, x), p, block.half(),
-                static_cast<double>(view.coarse.f_error), static_cast<double>(view.coarse.g_error), coarse);
+        compare(stage, field_of(stage, traced.level, x), p, block.half(), traced.f_error, traced.gradient_error, fine);
+        compare(stage, field_of(stage, rough, x), p, block.half(), static_cast<double>(rough.f_error),
+                static_cast<double>(rough.g_error), coarse);
         if (HasFatalFailure()) return;
       }
     }
@@ -80,35 +80,118 @@ TEST(Block, ErrorIsWithinTheTolerance) {
   Random random(62);
   for (const Setting& s : settings()) {
     const Stage stage(random_scene(random, s, 12));
-    for (std::size_t i = 0; i < stage.tree.cells().size(); i += 29) {
+    for (std::size_t i = 0; i < stage.cells.size(); i += 29) {
       const Block block = stage.block(i);
-      EXPECT_LT(block.f_error() + block.gradient_error() / s.degree, 1e-5 * (s.degree - 1)) << name_of(s);
+      const Block::Fine& fine = block.fine();
+      EXPECT_LT(fine.f_error + fine.gradient_error / s.degree, 1e-5 * (s.degree - 1)) << name_of(s);
     }
   }
 }
 
-TEST(Block, MaskHidesNoSurface) {
+// The smallest patch that holds x, in block coordinates; null where octants are dropped.
+const Patch* patch_at(const Octants& octants, const Vec3d& x, const Vec3d& center, double half) {
+  const int octant = (x.x > center.x ? 1 : 0) | (x.y > center.y ? 2 : 0) | (x.z > center.z ? 4 : 0);
+  if (!(octants.boxes.present >> octant & 1)) return nullptr;
+  const Patch& patch = octants.patch(octants, octant);
+  if (patch.kind != Patch::Kind::Divided) return &patch;
+  return patch_at(*patch.octants, x, octant_center(center, half, octant), half / 2);
+}
+const Patch* patch_at(const Block& block, const Vec3d& x) { return patch_at(*block.view().octants, x, {0, 0, 0}, 1); }
+
+std::array<double, 4> polynomial_at(const Patch& patch, const Vec3d& x) {
+  std::array<double, 4> sum{};
+  for (std::size_t i = 0; i < far_monomials; ++i) {
+    const Monomial& m = monomials[i];
+    const int exponents[3] = {m.a, m.b, m.c};
+    double product = 1;
+    for (std::size_t k = 0; k < 3; ++k)
+      for (int e = 0; e < exponents[k]; ++e)
+        product *= (x[k] - static_cast<double>(patch.center[k])) / static_cast<double>(patch.half);
+    for (std::size_t k = 0; k < 4; ++k) sum[k] += product * static_cast<double>(patch.polynomial[4 * i + k]);
+  }
+  return sum;
+}
+
+TEST(Patches, PolynomialsAreWithinTheirStatedErrors) {
+  Random random(64);
+  double largest_f = 0, largest_g = 0;
+  int tried = 0;
+  for (const Setting& s : settings()) {
+    const Stage stage(random_scene(random, s, random.whole(2, 12)));
+    for (int i = 0; i < 60; ++i) {
+      const Block block =
+          stage.block(static_cast<std::size_t>(random.whole(0, static_cast<int>(stage.cells.size()) - 1)));
+      for (int k = 0; k < 40; ++k) {
+        const Vec3d x = random.vector(1);
+        const Patch* patch = patch_at(block, x);
+        if (patch == nullptr || patch->kind != Patch::Kind::Smooth) continue;
+        ++tried;
+        const auto found = polynomial_at(*patch, x);
+        const auto exact =
+            sum_of_primitives<Derivatives::ScaleInvariant>(stage.field, block.center() + x * block.half());
+        const double f_share = std::fabs(found[0] - exact.value) / static_cast<double>(patch->f_error);
+        const double g_share =
+            length(Vec3d{found[1], found[2], found[3]} - exact.si_gradient) / static_cast<double>(patch->g_error);
+        ASSERT_LE(f_share, 1) << name_of(s);
+        ASSERT_LE(g_share, 1) << name_of(s);
+        largest_f = std::max(largest_f, f_share);
+        largest_g = std::max(largest_g, g_share);
+      }
+    }
+  }
+  std::cout << "  " << tried << " points; largest error over the stated: f " << largest_f << ", grad_S " << largest_g
+            << '\n';
+  EXPECT_GT(tried, 2000);
+}
+
+// Of a segment between a point outside and one inside.
+Vec3d surface_between(const Stage& stage, const Block& block, Vec3d outside, Vec3d inside) {
+  for (int i = 0; i < 30; ++i) {
+    const Vec3d middle = (outside + inside) * 0.5;
+    (stage.value(block.center() + middle * block.half()) < 1 ? outside : inside) = middle;
+  }
+  return inside;
+}
+
+bool holds(const Patch& patch, const Vec3d& x) {
+  if (patch.kind == Patch::Kind::Empty) return false;
+  double height = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (x[k] < static_cast<double>(patch.lower[k]) || x[k] > static_cast<double>(patch.upper[k])) return false;
+    height += x[k] * static_cast<double>(patch.normal[k]);
+  }
+  return height <= static_cast<double>(patch.offset);
+}
+
+TEST(Patches, HoldAllSurface) {
   Random random(63);
-  std::size_t inside = 0, marked = 0, all = 0;
+  int surface = 0, smooth = 0;
   for (const Setting& s : settings()) {
     const Stage stage(random_scene(random, s, random.whole(2, 9)));
     for (int i = 0; i < 60; ++i) {
       const Block block =
-          stage.block(static_cast<std::size_t>(random.whole(0, static_cast<int>(stage.tree.cells().size()) - 1)));
-      all += 64;
-      marked += static_cast<std::size_t>(__builtin_popcountll(block.mask()));
-      for (int k = 0; k < 60; ++k) {
-        const Vec3d x = random.vector(1);
-        if (stage.value(block.center() + x * block.half()) < 1) continue;
-        ++inside;
-        const auto at = [](double v) { return std::min(3, static_cast<int>((v + 1) * 2)); };
-        ASSERT_TRUE(block.mask() >> (at(x.x) + 4 * at(x.y) + 16 * at(x.z)) & 1) << name_of(s);
+          stage.block(static_cast<std::size_t>(random.whole(0, static_cast<int>(stage.cells.size()) - 1)));
+      for (int k = 0; k < 40; ++k) {
+        Vec3d a = random.vector(1), b = random.vector(1);
+        const auto value = [&](const Vec3d& x) { return stage.value(block.center() + x * block.half()); };
+        if (value(a) >= 1) std::swap(a, b);
+        if (value(a) >= 1 || value(b) < 1) continue;
+        const Vec3d x = surface_between(stage, block, a, b);
+        ++surface;
+        const Patch* patch = patch_at(block, x);
+        ASSERT_NE(patch, nullptr) << name_of(s);
+        ASSERT_TRUE(holds(*patch, x)) << name_of(s);
+        smooth += patch->kind == Patch::Kind::Smooth;
+        const Vec3d p = block.center() + x * block.half();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          ASSERT_GE(p[axis], block.box().lower[axis]);
+          ASSERT_LE(p[axis], block.box().upper[axis]);
+        }
       }
     }
   }
-  std::cout << "  " << inside << " points inside; " << static_cast<double>(marked) / static_cast<double>(all)
-            << " of the sub-cells marked\n";
-  EXPECT_GT(inside, 5000U);
+  std::cout << "  " << surface << " points of surface, " << smooth << " of them in patches with a polynomial\n";
+  EXPECT_GT(surface, 2000);
 }
 
 }  // namespace

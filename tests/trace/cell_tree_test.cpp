@@ -23,8 +23,8 @@ std::vector<Setting> settings() {
 
 class Cells {
  public:
-  explicit Cells(const CellTree& tree) {
-    for (const auto& c : tree.cells()) {
+  explicit Cells(const Stage& stage) {
+    for (const auto& c : stage.cells) {
       boxes_.push_back(c.box());
       bounds_.include(boxes_.back());
       smallest_ = std::min(smallest_, 2 * c.half);
@@ -48,8 +48,8 @@ TEST(CellTree, HoldsEverySurfacePoint) {
   std::size_t points = 0, cells = 0;
   for (const Setting& s : settings()) {
     const Stage stage(random_scene(random, s, random.whole(2, 9)));
-    const Cells cover(stage.tree);
-    cells += stage.tree.cells().size();
+    const Cells cover(stage);
+    cells += stage.cells.size();
     for (int i = 0; i < 150; ++i) {
       // From a place inside outwards; the field may rise and fall on the way, any crossing will do.
       const auto& segment = stage.field.segments.skeletons.front();
@@ -103,7 +103,7 @@ TEST(CellTree, LeavesOutNoSurface) {
   int scene = 0;
   for (const Setting& s : settings()) {
     const Stage stage(++scene % 3 == 0 ? thick_scene(random, s) : random_scene(random, s, random.whole(2, 9)));
-    const Cells cover(stage.tree);
+    const Cells cover(stage);
     Attack attack{stage, cover};
     for (int i = 0; i < 200; ++i) {
       Vec3d p = random_in(random, cover.bounds().padded(0.3));
@@ -129,11 +129,11 @@ TEST(CellTree, DoesNotFillTheSpaceBetween) {
     blend.alpha = alpha;
     blend.points.add({{0, 0, 0}, 1}, {});
     blend.points.add({{300, 200, 100}, 1}, {});
-    EXPECT_LT(Stage(blend).tree.cells().size(), 400U) << alpha;
+    EXPECT_LT(Stage(blend).cells.size(), 400U) << alpha;
   }
 }
 
-TEST(CellTree, OfNothingIsEmpty) { EXPECT_TRUE(Stage(BlendField{}).tree.cells().empty()); }
+TEST(CellTree, OfNothingIsEmpty) { EXPECT_TRUE(Stage(BlendField{}).cells.empty()); }
 
 }  // namespace
 }  // namespace marrow::test

@@ -45,7 +45,8 @@ struct Tally {
 
 class Judge {
  public:
-  explicit Judge(const BlendField& field) : field_(field), oracle_(field_), cells_(field) {}
+  explicit Judge(const BlendField& field, bool polynomials = true)
+      : field_(field), oracle_(field_), cells_(field, "", polynomials) {}
 
   std::optional<double> check(Ray ray) {
     ++tally.rays;
@@ -116,9 +117,9 @@ void expect_clean(const Judge& judge, const Setting& s) {
 TEST(FirstRoot, AgreesWithTheOracle) {
   Random random(71);
   Tally all;
-  for (int round = 0; round < 2; ++round)
+  for (const bool polynomials : {true, false})
     for (const Setting& s : settings()) {
-      Judge judge(random_scene(random, s, random.whole(2, 12)));
+      Judge judge(random_scene(random, s, random.whole(2, 12)), polynomials);
       for (int i = 0; i < 120; ++i) judge.check(any_ray(random, judge.field()));
       expect_clean(judge, s);
       all.add(judge.tally);

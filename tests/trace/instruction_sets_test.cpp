@@ -39,9 +39,9 @@ TEST(InstructionSets, GiveTheSameBits) {
     for (const auto& name : sets) tracers.emplace_back(blend, name);
     const BlendTracer& first = tracers.front().tracer();
     for (const AllCells& other : tracers) {
-      ASSERT_EQ(other.tracer().cell_count(), first.cell_count());
-      for (std::size_t i = 0; i < first.cell_count(); ++i) {
-        const Box3 a = first.cell_box(i), b = other.tracer().cell_box(i);
+      ASSERT_EQ(other.tracer().tile_count(), first.tile_count());
+      for (std::size_t i = 0; i < first.tile_count(); ++i) {
+        const Box3 a = first.tile_box(i), b = other.tracer().tile_box(i);
         ASSERT_TRUE(same(a.lower, b.lower) && same(a.upper, b.upper));
       }
     }

@@ -24,25 +24,30 @@ struct Stage {
   Correction correction;
   IsoCurve iso;
   PieceCutter cutter;
-  std::vector<Piece> pieces;
+  SourceTree sources;
   const BlockKernels& kernels;
   NearFar coarse, fine;
-  CellTree tree;
   mutable BlockArena arena;
+  LatticeError lattice[2];
+  CellTree tree;
+  std::vector<CellTree::Cell> cells;
+  Block::Context context;
 
   explicit Stage(BlendField f, std::string_view instruction_set = "")
       : field(std::move(f)),
         correction(correction_of(field)),
         iso(guarded(field, IsoCurve(correction, field.alpha))),
         cutter(field.degree, iso.critical_field()),
-        pieces(cutter.cut(field)),
+        sources(cutter.cut(field), field.degree),
         kernels(*block_kernels(instruction_set)),
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
         fine(field.degree, budget_of(TraceOptions{}.tolerance, field.degree), kernels),
-        tree(pieces, fine, iso, kernels, field.degree, cells_for(pieces.size())) {}
+        lattice{lattice_error(field.degree), lattice_error(field.degree - 1)},
+        tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
+        cells(tree.cells()),
+        context{sources.pieces(), tree, cutter, coarse, fine, lattice, iso, kernels, field.degree, arena, true} {}
 
-  Block::Context context() const { return {pieces, tree, cutter, coarse, fine, iso, kernels, field.degree}; }
-  Block block(std::size_t cell) const { return Block(context(), tree.cells()[cell], arena); }
+  Block block(std::size_t cell) const { return Block(context, cells[cell]); }
   double value(const Vec3d& p) const { return corrected_value(field, p); }
 };
 

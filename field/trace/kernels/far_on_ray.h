@@ -35,8 +35,9 @@ inline V4 far_at(const FieldLevel& level, float x, float y, float z) {
   return nested_polynomial<V4>(x, y, z, [&](int i) { return load4(level.far + 4 * i); });
 }
 
-// The same at four points; each coordinate stands in four lanes for each point.
-inline V16 far_at_four(const FieldLevel& level, V16 x, V16 y, V16 z) {
+// The same at four points; each coordinate stands in four lanes for each point. Not inlined: with the middle point
+// beside it, it would not fit into the registers.
+[[gnu::noinline]] V16 far_at_four(const FieldLevel& level, V16 x, V16 y, V16 z) {
   return nested_polynomial<V16>(x, y, z, [&](int i) {
     const V4 c = load4(level.far + 4 * i);
     return __builtin_shufflevector(c, c, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3);

@@ -17,46 +17,53 @@ inline void fill_monomials(V16 x, V16 y, V16 z, V16 (&m)[56]) {
   m[55] = z * m[34];
 }
 
-// For j = 0, 1, 2 the sums of w r^k |r|^-(m + 2 (k + j)) over k = 0..5, 0..3, 0..1, without their constant factors.
-template <int J, int Degree>
-inline void accumulate_tensor(const V16 (&power)[56], const V16 (&inverse)[6], V16 tau, V16* f, V16* potential) {
-  constexpr int begin[] = {0, 1, 4, 10, 20, 35, 56};
-  for (int k = 0; k <= Degree; ++k)
-    for (int i = begin[k]; i < begin[k + 1]; ++i) {
-      const V16 v = inverse[k + J] * power[i];
-      f[i] += v;
-      potential[i] += v * tau;
-    }
+// For one j the sums of f y^k |y|^(2j) over k <= Degree, without their constant factors; `field` is f |y|^(2j).
+template <int Degree>
+inline void accumulate_tensor(const V16 (&power)[56], V16 field, V16 tau, V16* f, V16* potential) {
+  constexpr int size[] = {1, 4, 10, 20, 35, 56};
+  for (int i = 0; i < size[Degree]; ++i) {
+    const V16 v = field * power[i];
+    f[i] += v;
+    potential[i] += v * tau;
+  }
 }
 
-void far_moments(const float* group, int groups, int exponent, float* f_out, float* potential_out) {
+struct MomentSums {
   V16 f[far_moment_count] = {}, potential[far_moment_count] = {};
-  for (int k = 0; k < groups; ++k, group += floats_per_group) {
-    const V16 x = load(group), y = load(group + 16), z = load(group + 32), tau = load(group + 64);
-    V16 power[56], inverse[6];
+
+  // One inverted source in each lane.
+  void add(V16 x, V16 y, V16 z, V16 field, V16 tau) {
+    V16 power[56];
     fill_monomials(x, y, z, power);
-    const V16 inv = 1.0F / (x * x + y * y + z * z);
-    inverse[0] = load(group + 48) * inverse_power<0>(inv, exponent);
-    for (int i = 1; i < 6; ++i) inverse[i] = inverse[i - 1] * inv;
-    accumulate_tensor<0, 5>(power, inverse, tau, f, potential);
-    accumulate_tensor<1, 3>(power, inverse, tau, f + 56, potential + 56);
-    accumulate_tensor<2, 1>(power, inverse, tau, f + 76, potential + 76);
+    const V16 squared = x * x + y * y + z * z, field2 = field * squared;
+    accumulate_tensor<5>(power, field, tau, f, potential);
+    accumulate_tensor<3>(power, field2, tau, f + 56, potential + 56);
+    accumulate_tensor<1>(power, field2 * squared, tau, f + 76, potential + 76);
   }
-  static_assert(far_moment_count == 80);
-  for (int i = 0; i < far_moment_count; i += 8) {  // eight sums of each kind at a time
-    V16 a[12] = {};
-    float s[16];
-    for (int k = 0; k < 8; ++k) a[k] = f[i + k];
-    sum_lanes(a, s);
-    for (int k = 0; k < 8; ++k) f_out[i + k] = s[k];
-    for (int k = 0; k < 8; ++k) a[k] = potential[i + k];
-    sum_lanes(a, s);
-    for (int k = 0; k < 8; ++k) potential_out[i + k] = s[k];
+  void write(float* f_out, float* potential_out) const {
+    static_assert(far_moment_count == 80);
+    for (int i = 0; i < far_moment_count; i += 8) {  // eight sums of each kind at a time
+      V16 a[12] = {};
+      float s[16];
+      for (int k = 0; k < 8; ++k) a[k] = f[i + k];
+      sum_lanes(a, s);
+      for (int k = 0; k < 8; ++k) f_out[i + k] = s[k];
+      for (int k = 0; k < 8; ++k) a[k] = potential[i + k];
+      sum_lanes(a, s);
+      for (int k = 0; k < 8; ++k) potential_out[i + k] = s[k];
+    }
   }
+};
+
+void far_moments(const float* group, int groups, float* f_out, float* potential_out) {
+  MomentSums sums;
+  for (int k = 0; k < groups; ++k, group += floats_per_group)
+    sums.add(load(group), load(group + 16), load(group + 32), load(group + 48), load(group + 64));
+  sums.write(f_out, potential_out);
 }
 
 // One kind of pieces (one exponent) against one ball. Distances are lowered and raised by what rounding can do to
-// numbers of their size: coordinates and distances below 100 have errors below 1e-5.
+// numbers of the size of the coordinates. Fields are powers of tau / d, which no scale can make overflow early.
 template <int Exponent>
 inline void add_octant(const float* group, int groups, int exponent, const float (&c)[3], float radius,
                        OctantBounds& out) {
@@ -67,19 +74,21 @@ inline void add_octant(const float* group, int groups, int exponent, const float
     const V16 along = (wx * ax + wy * ay + wz * az) * load(group + 96);  // 1 / length^2
     const V16 t = along < 0.0F ? V16{} : along > 1.0F ? splat(1) : along;
     const V16 dx = wx - ax * t, dy = wy - ay * t, dz = wz - az * t;
-    const V16 mass = load(group + 112), low_mass = load(group + 128), tau = load(group + 144), size = load(group + 160);
-    const V16 d = root_of(dx * dx + dy * dy + dz * dz), slack = 2e-6F * (1.0F + d);
-    const V16 nearest = d - (radius + slack), safe = larger(nearest, splat(1e-4F));
-    const V16 inverse = 1.0F / safe, field = mass * inverse_power<Exponent>(inverse * inverse, exponent);
-    const V16 far_end = 1.0F / (d + size + radius + slack);
-    const V16 softened = 1.0F / larger(d, 0.5F * tau);
-    const V16 weight = mass * inverse_power<Exponent>(softened * softened, exponent);
+    const V16 share = load(group + 112), taper = load(group + 128), tau = load(group + 144), size = load(group + 160),
+              reach = load(group + 176);
+    const V16 d = root_of(dx * dx + dy * dy + dz * dz), slack = 2e-6F * (1.0F + d + size);
+    const V16 nearest = d - (radius + reach + slack), high = tau / larger(nearest, splat(1e-4F));
+    const V16 field = share * inverse_power<Exponent>(high * high, exponent);
+    // All of a piece is within its length of the nearest point, and nowhere thinner than its thin end.
+    const V16 thin = tau - (taper < 0.0F ? V16{} - taper : taper), middle = tau / larger(d, 0.5F * tau);
+    const V16 low = thin / (d + size + radius + slack);
+    const V16 weight = share * inverse_power<Exponent>(middle * middle, exponent);
     a[0] += field;
-    a[1] += field * tau * inverse;
-    a[2] += low_mass * inverse_power<Exponent>(far_end * far_end, exponent);
+    a[1] += field * high;
+    a[2] += thin > 0.0F ? share * (tau / thin) * inverse_power<Exponent>(low * low, exponent) : V16{};
     a[3] += weight;
     a[4] += weight * tau;
-    touching = larger(touching, mass > 0.0F ? 1e-4F - nearest : V16{} - 1.0F);
+    touching = larger(touching, share > 0.0F ? 1e-4F - nearest : V16{} - 1.0F);
   }
   float s[16];
   sum_lanes(a, s);

@@ -22,13 +22,13 @@ inline void far_derivatives(const FieldLevel& level, const float p[3], V4 (&d)[3
       }
 }
 
-PointField point_field(const BlockView& block, const float p[3]) {
+PointField point_field(const FieldLevel& level, int degree, const float p[3]) {
   FullSums s{};
   V16 nearest{};
-  for_each_list(block.fine, block.degree, FullSummer{p, nearest, s});
-  const V4 far = far_at(block.fine, p[0], p[1], p[2]);
+  for_each_list(level, degree, FullSummer{p, nearest, s});
+  const V4 far = far_at(level, p[0], p[1], p[2]);
   V4 d[3] = {};
-  far_derivatives(block.fine, p, d);
+  far_derivatives(level, p, d);
   PointField out;
   out.f = s.f + far[0];
   out.second = s.second;

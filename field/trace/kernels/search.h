@@ -176,33 +176,3 @@ inline Root decide(Search& s, float guess, bool any) {
   root.t = s.gap_end();
   return root;
 }
-
-Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
-  float front = query.t0;
-  Root root;
-  if (query.from_surface) {  // too near for the coarse level; one fine certificate leads away
-    Marcher march(block, block.fine, ray, query.t0, query.t1);
-    Search start(march, query.t0, query.t1);
-    start.record(march.sample(query.t0));
-    root.evaluations = march.evaluations;
-    if (start.missed()) return root;
-    front = start.front;
-  }
-  Marcher coarse(block, block.coarse, ray, front, query.t1);
-  Search far_off(coarse, front, query.t1);
-  float guess = front;
-  const Approach approached = approach(far_off, query.any, guess);
-  root.evaluations += coarse.evaluations;
-  if (approached == Approach::Missed) return root;
-  if (approached == Approach::SurelyInside) {
-    root.hit = true;
-    root.t = far_off.inside.t;
-    return root;
-  }
-  Marcher fine(block, block.fine, ray, far_off.front, query.t1);
-  Search close(fine, far_off.front, query.t1);
-  const int before = root.evaluations;
-  root = decide(close, min_of(max_of(guess, far_off.front), query.t1), query.any);
-  root.evaluations = before + fine.evaluations;
-  return root;
-}

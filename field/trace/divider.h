@@ -1,0 +1,51 @@
+// Decides what part of a cube may hold surface, from bounds of f and |grad_S f| over its octants.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "field/trace/block_kernels.h"
+#include "field/trace/iso_curve.h"
+#include "field/trace/near_far.h"
+#include "field/trace/source_tree.h"
+
+namespace marrow {
+
+Vec3d octant_center(const Vec3d& center, double half, int octant);
+
+/// A cube and the sources as it sees them.
+struct Branch {
+  Vec3d center;
+  double half = 0;
+  Surroundings sources;
+};
+
+/// Immutable; works with a coarse split, whose errors enter the bounds.
+class Divider {
+ public:
+  Divider(const SourceTree&, const NearFar& coarse, const IsoCurve&, const BlockKernels&, int degree);
+
+  /// A cube outside of which the field is below 1.
+  Branch root() const;
+
+  struct Octant {
+    bool mixed = false;  ///< may hold surface; else its field is below 1 all over it, or above 1
+    double local_radius = 0;
+  };
+  std::array<Octant, 8> octants(const Branch&) const;
+  /// One of the eight half-sized cubes.
+  Branch child(const Branch&, int octant) const;
+
+ private:
+  enum class Side { Outside, Inside, Mixed };
+  Side side(const OctantBounds&, const FarField::Bounds&) const;
+  double influence() const;
+
+  const SourceTree& tree_;
+  const NearFar& coarse_;
+  const IsoCurve& iso_;
+  const BlockKernels& kernels_;
+  int degree_;
+};
+
+}  // namespace marrow

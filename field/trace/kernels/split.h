@@ -1,0 +1,123 @@
+// Which of some pieces are far from a ball, and the moments of those that are. Part of block_kernels_<set>.cpp.
+
+// The tail sum_{k>=5} binom(e+k-1, k) q^k of the series of (1-q)^-e (tracing.md B5): its terms fall at least by the
+// first ratio, so a geometric series bounds it. `first` is binom(e+4, 5). Negative: no bound.
+inline V16 series_tail(V16 q, int exponent, float first) {
+  const V16 q2 = q * q, rest = 1.0F - q * (static_cast<float>(exponent + 5) / 6);
+  return rest > 0.05F ? first * q2 * q2 * q / rest : V16{} - 1.0F;
+}
+
+struct FarLanes {
+  V16 far;               // 1 or 0
+  V16 f_error, g_error;  // of lanes that are far
+  V16 field, gradient;   // largest over the ball's centre
+  int nodes = 1;
+};
+
+// Distances are lowered by what rounding can do to numbers of the size of the coordinates.
+template <int Exponent>
+inline FarLanes far_lanes(const float* group, const FarQuery& query) {
+  const int m = Exponent > 0 ? Exponent : query.exponent;
+  const float* c = query.center;
+  const V16 wx = c[0] - load(group), wy = c[1] - load(group + 16), wz = c[2] - load(group + 32);
+  const V16 ax = load(group + 48), ay = load(group + 64), az = load(group + 80);
+  const V16 along = (wx * ax + wy * ay + wz * az) * load(group + 96);
+  const V16 t = along < 0.0F ? V16{} : along > 1.0F ? splat(1) : along;
+  const V16 dx = wx - ax * t, dy = wy - ay * t, dz = wz - az * t;
+  const V16 share = load(group + 112), taper = load(group + 128), tau = load(group + 144), size = load(group + 160);
+  const V16 exact = root_of(dx * dx + dy * dy + dz * dz), d = exact - 2e-6F * (query.radius + exact + size);
+  const V16 q = query.radius / larger(d, splat(1e-20F)), high = tau / larger(d, splat(1e-20F));
+  FarLanes out;
+  out.field = share * inverse_power<Exponent>(high * high, m);
+  out.gradient = static_cast<float>(m) * out.field * high;
+  const V16 f_tail = series_tail(q, m, query.field_series), g_tail = series_tail(q, m + 1, query.gradient_series);
+  out.f_error = out.field * f_tail;
+  out.g_error = out.gradient * g_tail;
+  V16 far = q <= 0.5F ? splat(1) : V16{};
+  far = share > 0.0F ? far : V16{};  // an unused lane
+  far = f_tail >= 0.0F ? far : V16{};
+  far = g_tail >= 0.0F ? far : V16{};
+  far = out.f_error <= query.field_budget ? far : V16{};
+  far = out.g_error <= query.gradient_budget ? far : V16{};
+  if (query.points) {
+    out.far = far;
+    return out;
+  }
+  // Gauss-Legendre rules of 1, 2 and 3 nodes at the least distance to the ball (quadrature.h).
+  const V16 near = larger(d - query.radius, splat(1e-20F)), near_high = tau / near, ratio = size / near;
+  const V16 slope = taper < 0.0F ? V16{} - taper : taper;
+  const V16 widened = 1.0F + slope * near / larger(size * tau, splat(1e-30F));
+  V16 scale = share * inverse_power<Exponent>(near_high * near_high, m);
+  for (int k = 1; k < m; ++k) scale = scale * widened;
+  const V16 g_scale = scale * widened * near_high;
+  V16 shrink = splat(1);
+  for (int nodes = 1; nodes <= 3; ++nodes) {
+    shrink = shrink * ratio * ratio;
+    const V16 f = query.field_rule[nodes] * scale * shrink, g = query.gradient_rule[nodes] * g_scale * shrink;
+    V16 fits = f <= 0.25F * query.field_budget ? far : V16{};
+    fits = g <= 0.25F * query.gradient_budget ? fits : V16{};
+    const bool all = !(largest_lane(far - fits) > 0);
+    if (!all && nodes < 3) continue;
+    out.nodes = nodes;
+    out.far = fits;
+    out.f_error += f;
+    out.g_error += g;
+    break;
+  }
+  return out;
+}
+
+template <int Exponent>
+inline void add_far_nodes(const float* group, const FarQuery& query, const FarLanes& lanes_far, MomentSums& sums) {
+  constexpr float position[4][3] = {{}, {0.5F}, {0.21132487F, 0.78867513F}, {0.11270167F, 0.5F, 0.88729833F}};
+  constexpr float weight[4][3] = {{}, {1}, {0.5F, 0.5F}, {5 / 18.0F, 8 / 18.0F, 5 / 18.0F}};
+  const int m = Exponent > 0 ? Exponent : query.exponent, nodes = lanes_far.nodes;
+  const float* c = query.center;
+  const V16 x = load(group) - c[0], y = load(group + 16) - c[1], z = load(group + 32) - c[2];
+  const V16 ax = load(group + 48), ay = load(group + 64), az = load(group + 80);
+  const V16 share = load(group + 112), taper = load(group + 128), tau = load(group + 144);
+  const V16 first = taper > 0.0F ? tau - taper : tau;  // radius at `from`; tau is the larger one
+  const float per_half = 1 / query.half;
+  for (int k = 0; k < nodes; ++k) {
+    const float s = query.points ? 0 : position[nodes][k];
+    const V16 rx = x + ax * s, ry = y + ay * s, rz = z + az * s, radius = first + taper * s;
+    const V16 inverse2 = lanes_far.far > 0.0F ? 1.0F / (rx * rx + ry * ry + rz * rz) : V16{};
+    const V16 ratio2 = radius * radius * inverse2;
+    // w |r|^-m, w = share tau tau(s)^(n-1) for curves of m = n; share tau^m for points
+    const V16 lift = query.points ? splat(1) : tau / radius;
+    const V16 field = weight[nodes][k] * share * lift * inverse_power<Exponent>(ratio2, m);
+    const V16 scale = inverse2 * query.half;
+    sums.add(rx * scale, ry * scale, rz * scale, lanes_far.far > 0.0F ? field : V16{}, radius * per_half);
+  }
+}
+
+template <int Exponent>
+inline void split_groups(const float* group, int groups, const FarQuery& query, unsigned short* near, FarSums& out) {
+  MomentSums sums;
+  V16 totals[12] = {};
+  for (int k = 0; k < groups; ++k, group += floats_per_piece_group) {
+    const FarLanes lanes_far = far_lanes<Exponent>(group, query);
+    unsigned bits = 0;
+    for (int i = 0; i < lanes; ++i) bits |= (lanes_far.far[i] > 0 ? 0U : 1U) << i;
+    near[k] = static_cast<unsigned short>(bits);
+    if (bits == 0xFFFF) continue;
+    totals[0] += lanes_far.far > 0.0F ? lanes_far.f_error : V16{};
+    totals[1] += lanes_far.far > 0.0F ? lanes_far.g_error : V16{};
+    totals[2] += lanes_far.far > 0.0F ? lanes_far.field : V16{};
+    totals[3] += lanes_far.far > 0.0F ? lanes_far.gradient : V16{};
+    add_far_nodes<Exponent>(group, query, lanes_far, sums);
+  }
+  float s[16];
+  sum_lanes(totals, s);
+  out.f_error = s[0] * (1 + rounding);
+  out.g_error = s[1] * (1 + rounding);
+  out.field = s[2] * (1 + rounding);
+  out.gradient = s[3] * (1 + rounding);
+  sums.write(out.f, out.potential);
+}
+
+void far_split(const float* groups, int count, const FarQuery& query, unsigned short* near, FarSums& out) {
+  if (query.exponent == 4) split_groups<4>(groups, count, query, near, out);
+  else if (query.exponent == 3) split_groups<3>(groups, count, query, near, out);
+  else split_groups<0>(groups, count, query, near, out);
+}

@@ -1,0 +1,92 @@
+// A cube of 4 x 4 x 4 slots: what of the space of a blend is divided at once, when the first ray comes by.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <memory>
+
+#include "field/math/box3.h"
+#include "field/trace/divider.h"
+#include "field/trace/lazy.h"
+
+namespace marrow {
+
+class Block;
+class TileBoxes;
+
+/// Where a tile is and what it belongs to.
+struct TilePlace {
+  Vec3d center;
+  double half = 0;
+  int level = 0;                       ///< halvings since the root
+  const class Tile* parent = nullptr;  ///< null: a tile of the first level
+  int slot = 0;                        ///< in the parent
+
+  Box3 box() const {
+    const Vec3d h{half, half, half};
+    return {center - h, center + h};
+  }
+};
+
+/// What a tile is divided into. A slot, x + 4 y + 16 z, holds nothing, a cell, or a smaller tile; or the eight slots of
+/// an octant are one cell, which goes by the first of them.
+struct TileContent {
+  std::uint64_t cells = 0, tiles = 0;  ///< a bit for each slot
+  std::uint8_t large_cells = 0;        ///< a bit for each octant that is one cell
+};
+
+/// Blocks of cells and smaller tiles are made when asked for.
+class Tile {
+ public:
+  /// `coarse`: the sources around it, as the divider sees them.
+  Tile(const TilePlace&, Surroundings coarse, const TileContent&);
+  ~Tile();
+
+  const TilePlace& place() const { return place_; }
+  const TileContent& content() const { return content_; }
+  const Surroundings& coarse() const { return coarse_; }
+  const Lazy<Surroundings>& fine() const { return fine_; }
+  const Lazy<Surroundings>& fine_of_octant(int octant) const { return octants_[static_cast<std::size_t>(octant)]; }
+  /// Of a slot that has one.
+  const Lazy<Block>& block(int slot) const { return blocks_[rank(content_.cells, slot)]; }
+  /// Where in it surface can be.
+  const TileBoxes& boxes() const { return *boxes_; }
+  const Lazy<Tile>& child(int slot) const { return children_[rank(content_.tiles, slot)]; }
+  /// Of this tile itself, without its blocks and smaller tiles.
+  std::size_t bytes() const;
+
+ private:
+  static std::size_t rank(std::uint64_t mask, int slot) {
+    return static_cast<std::size_t>(std::popcount(mask & ((std::uint64_t{1} << slot) - 1)));
+  }
+
+  TilePlace place_;
+  TileContent content_;
+  Surroundings coarse_;
+  Lazy<Surroundings> fine_;
+  std::unique_ptr<const TileBoxes> boxes_;
+  std::array<Lazy<Surroundings>, 8> octants_;
+  std::unique_ptr<Lazy<Block>[]> blocks_;
+  std::unique_ptr<Lazy<Tile>[]> children_;
+};
+
+/// The octant of the tile in which a slot lies, and the octant of that which it is.
+struct SlotPath {
+  int outer, inner;
+};
+constexpr SlotPath path_of(int slot) {
+  const int x = slot & 3, y = slot >> 2 & 3, z = slot >> 4;
+  return {(x >> 1) | (y >> 1) << 1 | (z >> 1) << 2, (x & 1) | (y & 1) << 1 | (z & 1) << 2};
+}
+constexpr int slot_at(SlotPath p) {
+  int slot = 0;
+  for (int axis = 0; axis < 3; ++axis) slot |= ((p.outer >> axis & 1) << 1 | (p.inner >> axis & 1)) << (2 * axis);
+  return slot;
+}
+inline Vec3d slot_center(const Vec3d& center, double half, int slot) {
+  const SlotPath path = path_of(slot);
+  return octant_center(octant_center(center, half, path.outer), half / 2, path.inner);
+}
+
+}  // namespace marrow

@@ -1,0 +1,186 @@
+// Groups of sources: they hold what they say, and stand for their pieces within the errors they state.
+#include "field/trace/source_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "field/skeleton/skeletons.h"
+#include "tests/trace/stage.h"
+
+namespace marrow::test {
+namespace {
+
+// Many small skeletons in a few clumps, so that groups of all sizes are far from somewhere.
+BlendField clumps(Random& random, int degree, int count) {
+  BlendField blend;
+  blend.degree = degree;
+  Vec3d clump;
+  for (int i = 0; i < count; ++i) {
+    if (i % 40 == 0) clump = random.vector(8);
+    const Vec3d at = clump + random.vector(0.6);
+    const double thick = random.between(0.05, 0.15);
+    if (i % 4 == 3) blend.points.add({at, thick}, {});
+    else blend.segments.add({at, at + random.vector(0.3), thick, i % 3 ? thick : random.between(0.05, 0.15)}, {});
+  }
+  return blend;
+}
+
+SourceTree tree_of(const BlendField& blend) {
+  return SourceTree(PieceCutter(blend.degree, 2.0).cut(blend), blend.degree);
+}
+
+void for_each_node(const SourceTree& tree, const std::function<void(const SourceNode&)>& visit) {
+  std::vector<SourceRef> open(tree.roots().begin(), tree.roots().end());
+  while (!open.empty()) {
+    const SourceRef here = open.back();
+    open.pop_back();
+    const SourceNode& n = tree.node(here.index());
+    visit(n);
+    if (n.is_leaf()) continue;
+    open.push_back(SourceRef::node(here.index() + 1));
+    open.push_back(SourceRef::node(n.right));
+  }
+}
+
+TEST(SourceTree, HoldsEveryPieceOnceInsideItsBalls) {
+  Random random(61);
+  for (const int count : {1, 7, 8, 9, 400}) {
+    const SourceTree tree = tree_of(clumps(random, 4, count));
+    std::vector<int> seen(tree.pieces().size(), 0);
+    for_each_node(tree, [&](const SourceNode& n) {
+      for (std::uint32_t i = n.begin; i < n.end; ++i) {
+        const Piece& p = tree.piece(i);
+        EXPECT_EQ(p.is_point(), n.is_point);
+        EXPECT_LE(length(p.from - n.center), n.radius * (1 + 1e-12));
+        EXPECT_LE(length(p.to - n.center), n.radius * (1 + 1e-12));
+        if (n.is_leaf()) ++seen[i];
+      }
+    });
+    EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; }));
+  }
+}
+
+// Against sums over many short stretches of every piece.
+TEST(SourceTree, MomentsAreThoseOfThePieces) {
+  Random random(62);
+  for (const int degree : {3, 4, 7, 20}) {
+    const SourceTree tree = tree_of(clumps(random, degree, 60));
+    for_each_node(tree, [&](const SourceNode& n) {
+      double mass = 0, spread = 0, tau_mass = 0, tau_spread = 0;
+      Vec3d first, tau_shift;
+      for (std::uint32_t i = n.begin; i < n.end; ++i) {
+        const Piece& p = tree.piece(i);
+        const int steps = p.is_point() ? 1 : 400;
+        for (int k = 0; k < steps; ++k) {
+          const double s = (k + 0.5) / steps, tau = p.radius_from + (p.radius_to - p.radius_from) * s;
+          const double w = p.mass * integer_power(tau / p.radius, degree - 1) / steps;
+          const Vec3d at = lerp(p.from, p.to, s) - n.center;
+          mass += w;
+          first += at * w;
+          spread += w * length_squared(at);
+          tau_mass += w * tau;
+          tau_shift += at * (w * tau);
+          tau_spread += w * tau * length_squared(at);
+        }
+      }
+      const double size = std::max(n.radius, 1e-3);
+      EXPECT_NEAR(n.mass, mass, 1e-4 * mass);
+      EXPECT_LT(length(first), 1e-4 * mass * size);
+      EXPECT_NEAR(n.spread, spread, 1e-4 * mass * size * size);
+      EXPECT_NEAR(n.tau_mass, tau_mass, 1e-4 * tau_mass);
+      EXPECT_LT(length(n.tau_shift - tau_shift), 1e-4 * tau_mass * size);
+      EXPECT_NEAR(n.tau_spread, tau_spread, 1e-4 * tau_mass * size * size);
+    });
+  }
+}
+
+struct FieldValue {
+  double f = 0;
+  Vec3d g{};
+};
+
+FieldValue exact(const Piece& piece, const Vec3d& p, int degree) {
+  const SkeletonSample s = piece.is_point()
+                               ? point_field<Derivatives::ScaleInvariant>({piece.from, piece.radius}, p, degree)
+                               : segment_field<Derivatives::ScaleInvariant>(
+                                     {piece.from, piece.to, piece.radius_from, piece.radius_to}, p, degree);
+  return {s.value, s.si_gradient};
+}
+
+FieldValue value_of(const FarField& far, const Vec3d& x) {
+  FieldValue v;
+  for (std::size_t i = 0; i < monomial_count; ++i) {
+    const Monomial& m = monomials[i];
+    const double px = integer_power(x.x, m.a), py = integer_power(x.y, m.b), pz = integer_power(x.z, m.c);
+    v.f += far.f[i] * px * py * pz;
+    const double c = far.potential[i];
+    if (m.a > 0) v.g.x += c * m.a * integer_power(x.x, m.a - 1) * py * pz;
+    if (m.b > 0) v.g.y += c * m.b * px * integer_power(x.y, m.b - 1) * pz;
+    if (m.c > 0) v.g.z += c * m.c * px * py * integer_power(x.z, m.c - 1);
+  }
+  return v;
+}
+
+// What a split folds away is what it leaves out of the list, to the error it states; groups and pieces alike.
+TEST(SourceTree, SplitsAreWithinTheirStatedErrors) {
+  Random random(63);
+  double f_use = 0, g_use = 0;
+  std::size_t folded = 0, kept_groups = 0;
+  for (int round = 0; round < 60; ++round) {
+    const int n = random.whole(3, 7);
+    const SourceTree tree = tree_of(clumps(random, n, 400));
+    const NearFar near_far(n, budget_of(round % 2 ? 1e-5 : 2e-2, n), *block_kernels(""));
+    const Vec3d center = random.vector(8);
+    const double half = exp(random.between(-4, 1));
+    FarField far;
+    const auto near = near_far.split(tree, tree.roots(), center, half, round % 3 ? 0.25 : -1, far);
+    std::vector<bool> is_far(tree.pieces().size(), true);
+    for (const SourceRef ref : near) {
+      const bool piece = ref.is_piece();
+      kept_groups += !piece;
+      const std::uint32_t begin = piece ? ref.index() : tree.node(ref.index()).begin,
+                          end = piece ? begin + 1 : tree.node(ref.index()).end;
+      for (std::uint32_t i = begin; i < end; ++i) is_far[i] = false;
+    }
+    for (int k = 0; k < 10; ++k) {
+      Vec3d x = random.vector(1);
+      if (k % 2 == 0) x = x / max_component(abs(x));  // on a face
+      FieldValue sum;
+      for (std::size_t i = 0; i < is_far.size(); ++i) {
+        if (!is_far[i]) continue;
+        folded += k == 0;
+        const FieldValue v = exact(tree.pieces()[i], center + x * half, n);
+        sum.f += v.f;
+        sum.g += v.g;
+      }
+      const FieldValue found = value_of(far, x);
+      const double f_error = std::fabs(found.f - sum.f), g_error = length(found.g - sum.g);
+      ASSERT_LE(f_error, far.f_error) << "n=" << n << " half=" << half;
+      ASSERT_LE(g_error, far.gradient_error) << "n=" << n << " half=" << half;
+      if (far.f_error > 0) f_use = std::max(f_use, f_error / far.f_error);
+      if (far.gradient_error > 0) g_use = std::max(g_use, g_error / far.gradient_error);
+    }
+  }
+  std::cout << "  " << folded << " pieces folded, " << kept_groups << " groups kept; largest error over bound: f "
+            << f_use << ", grad_S f " << g_use << '\n';
+  EXPECT_GT(folded, 5000U);
+  EXPECT_GT(kept_groups, 50U);
+}
+
+// Without groups each cube would look at every source.
+TEST(SourceTree, FarAwayAFewGroupsAreEnough) {
+  Random random(64);
+  const SourceTree tree = tree_of(clumps(random, 4, 4000));
+  const NearFar fine(4, budget_of(1e-5, 4), *block_kernels(""));
+  FarField far;
+  EXPECT_TRUE(fine.split(tree, tree.roots(), {300, 0, 0}, 1, -1, far).empty());
+  EXPECT_GT(far.f[0], 0);
+  // The budget of one group, twice for curves and points, and rounding: one source each.
+  EXPECT_LT(far.f_error, 3 * budget_of(1e-5, 4).field);
+}
+
+}  // namespace
+}  // namespace marrow::test
