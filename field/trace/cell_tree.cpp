@@ -14,8 +14,8 @@
 namespace marrow {
 namespace {
 
-// Of the half side of a tile: groups up to this size are passed on to its cells unopened.
-constexpr double largest_group = 0.25, open_all = -1;
+// Of the half side of a cube: groups up to this size are passed on unopened to the cubes inside it.
+constexpr double largest_group = 0.25, largest_coarse_group = 0.5, open_all = -1;
 
 // Squared, of a point outside; 0 inside.
 double distance2(const Box3& box, const Vec3d& p) {
@@ -119,12 +119,12 @@ CellTree::Cell CellTree::nearest_cell(std::size_t index, const Vec3d& p) const {
 Surroundings CellTree::coarse_around(const TilePlace& place) const {
   Surroundings s;
   if (place.parent == nullptr) {
-    s.near = coarse_.split(sources_, sources_.roots(), place.center, place.half, largest_group, s.far);
+    s.near = coarse_.split(sources_, sources_.roots(), place.center, place.half, largest_coarse_group, s.far);
     return s;
   }
   const SlotPath path = path_of(place.slot);
   s.far = place.parent->coarse().far.of_child(path.outer).of_child(path.inner);
-  s.near = coarse_.split(sources_, place.parent->coarse().near, place.center, place.half, largest_group, s.far);
+  s.near = coarse_.split(sources_, place.parent->coarse().near, place.center, place.half, largest_coarse_group, s.far);
   return s;
 }
 

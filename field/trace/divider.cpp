@@ -11,8 +11,8 @@ namespace marrow {
 namespace {
 
 // Of the half side: how large a group may be that bounds treat as one. Smaller groups bound more tightly, in longer
-// lists.
-constexpr double largest_group = 0.2;
+// lists: at 0.2 there are 2 % fewer cells, and dividing takes 1.4 times as long (10^6 segments of neurons).
+constexpr double largest_group = 0.5;
 
 }  // namespace
 

@@ -114,6 +114,7 @@ SurfaceReport report(const Surfaces& surfaces) {
     r.bytes += p.solid->bytes();
     if (field == nullptr) continue;
     const TraceStatistics s = field->statistics();
+    r.tiles += s.tiles;
     r.cells += s.cells;
     r.blocks += s.blocks;
     r.largest_error = std::max(r.largest_error, s.largest_error);
