@@ -26,7 +26,9 @@ inline ErrorBudget budget_of(double tolerance, int degree) {
 /// at 0.25, and the first one 0.25 s and 0.75 s more; with many pieces the number of cells matters more than their
 /// lists.
 inline CellTreeSettings cells_for(std::size_t piece_count) {
-  return {.cell_size = piece_count < 5'000 ? 0.35 : piece_count < 20'000 ? 0.5 : 0.8,
+  return {.cell_size = piece_count < 5'000    ? 0.35
+                       : piece_count < 20'000 ? 0.5
+                                              : 0.8,
           .tile_levels = piece_count < 20'000 ? 1 : 2};
 }
 
