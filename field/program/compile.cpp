@@ -213,7 +213,7 @@ class Compiler {
   void add_part(const Blend& blend, const Placement& here, std::optional<SkeletonModel> model = {}) {
     PlacedBlend part;
     part.blend = empty_field(blend);
-    const bool shared = shared_[here.node.index()];
+    const bool shared = !shared_.empty() && shared_[here.node.index()];
     if (shared) part.shape = here.node.index() + 1;
     const bool baked = !shared && here.from_node.similarity().has_value();
     if (!baked) {

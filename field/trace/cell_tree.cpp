@@ -32,10 +32,10 @@ double distance2(const Box3& box, const Vec3d& p) {
 // What one cube of the upper levels gives to the next.
 struct CellTree::Level {
   std::vector<TilePlace> tiles;
-  std::vector<Branch> branches;
+  std::vector<CubeView> branches;
 };
 
-void CellTree::expand(const Branch& parent, int depth, Level& out) const {
+void CellTree::expand(const CubeView& parent, int depth, Level& out) const {
   const double half = parent.half / 2, cells_along = integer_power(4, settings_.tile_levels);
   const auto octants = divider_.octants(parent);
   for (int i = 0; i < 8; ++i) {
@@ -56,7 +56,7 @@ CellTree::CellTree(const SourceTree& sources, const NearFar& coarse, const NearF
       divider_(sources, coarse, iso, kernels, degree),
       settings_(settings) {
   if (sources.pieces().empty()) return;
-  std::vector<Branch> level{divider_.root()};
+  std::vector<CubeView> level{divider_.root()};
   for (int depth = 1; !level.empty(); ++depth) {
     std::vector<Level> expansions(level.size());
     tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) { expand(level[i], depth, expansions[i]); });
@@ -129,7 +129,7 @@ Surroundings CellTree::coarse_around(const TilePlace& place) const {
 }
 
 std::unique_ptr<const Tile> CellTree::divide(const TilePlace& place) const {
-  const Branch whole{place.center, place.half, coarse_around(place)};
+  const CubeView whole{place.center, place.half, coarse_around(place)};
   const auto fits = [&](double half, const Divider::Octant& octant, int level) {
     return half <= settings_.cell_size * octant.local_radius || level >= settings_.deepest_level;
   };
