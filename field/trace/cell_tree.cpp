@@ -14,8 +14,8 @@
 namespace marrow {
 namespace {
 
-// Of the half side of a tile: groups up to this size are passed on to its cells unopened.
-constexpr double largest_group = 0.25, open_all = -1;
+// Of the half side of a cube: groups up to this size are passed on unopened to the cubes inside it.
+constexpr double largest_group = 0.25, largest_coarse_group = 0.5, open_all = -1;
 
 // Squared, of a point outside; 0 inside.
 double distance2(const Box3& box, const Vec3d& p) {
@@ -32,10 +32,10 @@ double distance2(const Box3& box, const Vec3d& p) {
 // What one cube of the upper levels gives to the next.
 struct CellTree::Level {
   std::vector<TilePlace> tiles;
-  std::vector<Branch> branches;
+  std::vector<CubeView> branches;
 };
 
-void CellTree::expand(const Branch& parent, int depth, Level& out) const {
+void CellTree::expand(const CubeView& parent, int depth, Level& out) const {
   const double half = parent.half / 2, cells_along = integer_power(4, settings_.tile_levels);
   const auto octants = divider_.octants(parent);
   for (int i = 0; i < 8; ++i) {
@@ -56,7 +56,7 @@ CellTree::CellTree(const SourceTree& sources, const NearFar& coarse, const NearF
       divider_(sources, coarse, iso, kernels, degree),
       settings_(settings) {
   if (sources.pieces().empty()) return;
-  std::vector<Branch> level{divider_.root()};
+  std::vector<CubeView> level{divider_.root()};
   for (int depth = 1; !level.empty(); ++depth) {
     std::vector<Level> expansions(level.size());
     tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) { expand(level[i], depth, expansions[i]); });
@@ -119,17 +119,17 @@ CellTree::Cell CellTree::nearest_cell(std::size_t index, const Vec3d& p) const {
 Surroundings CellTree::coarse_around(const TilePlace& place) const {
   Surroundings s;
   if (place.parent == nullptr) {
-    s.near = coarse_.split(sources_, sources_.roots(), place.center, place.half, largest_group, s.far);
+    s.near = coarse_.split(sources_, sources_.roots(), place.center, place.half, largest_coarse_group, s.far);
     return s;
   }
   const SlotPath path = path_of(place.slot);
   s.far = place.parent->coarse().far.of_child(path.outer).of_child(path.inner);
-  s.near = coarse_.split(sources_, place.parent->coarse().near, place.center, place.half, largest_group, s.far);
+  s.near = coarse_.split(sources_, place.parent->coarse().near, place.center, place.half, largest_coarse_group, s.far);
   return s;
 }
 
 std::unique_ptr<const Tile> CellTree::divide(const TilePlace& place) const {
-  const Branch whole{place.center, place.half, coarse_around(place)};
+  const CubeView whole{place.center, place.half, coarse_around(place)};
   const auto fits = [&](double half, const Divider::Octant& octant, int level) {
     return half <= settings_.cell_size * octant.local_radius || level >= settings_.deepest_level;
   };

@@ -70,7 +70,7 @@ class CellTree {
 
  private:
   struct Level;
-  void expand(const Branch&, int depth, Level& out) const;
+  void expand(const CubeView&, int depth, Level& out) const;
   std::unique_ptr<const Tile> divide(const TilePlace&) const;
   Surroundings coarse_around(const TilePlace&) const;
   const Surroundings& fine_around(const Tile&) const;

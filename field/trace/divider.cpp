@@ -11,8 +11,8 @@ namespace marrow {
 namespace {
 
 // Of the half side: how large a group may be that bounds treat as one. Smaller groups bound more tightly, in longer
-// lists.
-constexpr double largest_group = 0.2;
+// lists: at 0.2 there are 2 % fewer cells, and dividing takes 1.4 times as long (10^6 segments of neurons).
+constexpr double largest_group = 0.5;
 
 }  // namespace
 
@@ -55,10 +55,10 @@ double Divider::influence() const {
   return d;
 }
 
-Branch Divider::root() const {
+CubeView Divider::root() const {
   Box3 box;
   for (const Piece& p : tree_.pieces()) box.include(p.box());
-  Branch root;
+  CubeView root;
   // On a coarse binary grid, so that the planes of all cells are exact numbers and neighbours share them.
   const double needed = max_component(box.size()) / 2 + influence();
   const double grid = std::ldexp(1.0, std::ilogb(needed) - 10);
@@ -68,7 +68,7 @@ Branch Divider::root() const {
   return root;
 }
 
-std::array<Divider::Octant, 8> Divider::octants(const Branch& parent) const {
+std::array<Divider::Octant, 8> Divider::octants(const CubeView& parent) const {
   const NearGroups near(tree_, parent.sources.near, parent.center, parent.half);
   std::array<OctantBounds, 8> bounds;
   kernels_.octant_bounds(near.data(), near.curve_groups(), near.point_groups(), degree_, bounds.data());
@@ -86,8 +86,8 @@ std::array<Divider::Octant, 8> Divider::octants(const Branch& parent) const {
   return result;
 }
 
-Branch Divider::child(const Branch& parent, int octant) const {
-  Branch b{.center = octant_center(parent.center, parent.half, octant), .half = parent.half / 2, .sources = {}};
+CubeView Divider::child(const CubeView& parent, int octant) const {
+  CubeView b{.center = octant_center(parent.center, parent.half, octant), .half = parent.half / 2, .sources = {}};
   b.sources.far = parent.sources.far.of_child(octant);
   b.sources.near = coarse_.split(tree_, parent.sources.near, b.center, b.half, largest_group, b.sources.far);
   return b;

@@ -14,7 +14,7 @@ namespace marrow {
 Vec3d octant_center(const Vec3d& center, double half, int octant);
 
 /// A cube and the sources as it sees them.
-struct Branch {
+struct CubeView {
   Vec3d center;
   double half = 0;
   Surroundings sources;
@@ -26,15 +26,15 @@ class Divider {
   Divider(const SourceTree&, const NearFar& coarse, const IsoCurve&, const BlockKernels&, int degree);
 
   /// A cube outside of which the field is below 1.
-  Branch root() const;
+  CubeView root() const;
 
   struct Octant {
     bool mixed = false;  ///< may hold surface; else its field is below 1 all over it, or above 1
     double local_radius = 0;
   };
-  std::array<Octant, 8> octants(const Branch&) const;
+  std::array<Octant, 8> octants(const CubeView&) const;
   /// One of the eight half-sized cubes.
-  Branch child(const Branch&, int octant) const;
+  CubeView child(const CubeView&, int octant) const;
 
  private:
   enum class Side { Outside, Inside, Mixed };

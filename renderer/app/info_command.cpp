@@ -70,7 +70,7 @@ Json scene_info(const SceneInput& input, const LoadedScene& scene, const Surface
   for (const auto& light : d.lights) info["lights"].push_back(kind_of(light));
   const SurfaceReport built = report(surfaces);
   info["primitives"] = built.primitives;
-  info["cells"] = built.cells;
+  info["tiles"] = built.tiles;
   info["memory_bytes"] = built.bytes;
   info["build_seconds"] = built.build_seconds;
   info["bounds"] = corners(surfaces.bounds());
@@ -113,8 +113,8 @@ std::string text_of(const Json& info) {
     text += fmt::format("  {:<12} {}\n", material["name"].get<std::string>(), material["kind"].get<std::string>());
   text += fmt::format("lights      {}\n", info["lights"].size());
   for (const auto& light : info["lights"]) text += fmt::format("  {}\n", light.get<std::string>());
-  text += fmt::format("primitives  {}\ncells       {}\nmemory      {}\nbounds      {}\nbuilt in    {:.3f} s\n",
-                      info["primitives"].get<std::size_t>(), info["cells"].get<std::size_t>(),
+  text += fmt::format("primitives  {}\ntiles       {}\nmemory      {}\nbounds      {}\nbuilt in    {:.3f} s\n",
+                      info["primitives"].get<std::size_t>(), info["tiles"].get<std::size_t>(),
                       memory_text(info["memory_bytes"].get<std::size_t>()), box_text(info["bounds"]),
                       info["build_seconds"].get<double>());
   return text;

@@ -148,7 +148,7 @@ void describe(CLI::App& app, InfoCommand& c) {
   add_scene(app, c.scene);
   app.add_flag("--json", c.json, "As JSON");
   add_threads(app, c.threads);
-  app.footer("Example:\n  marrow info neuron.yaml    primitives, cells, memory, bounds, lights, materials");
+  app.footer("Example:\n  marrow info neuron.yaml    primitives, tiles, memory, bounds, lights, materials");
 }
 
 void describe(CLI::App& app, SliceCommand& c) {

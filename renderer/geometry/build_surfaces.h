@@ -22,7 +22,8 @@ struct SurfaceOptions {
 
 struct SurfaceReport {
   std::size_t primitives = 0;  ///< skeleton primitives and triangles
-  std::size_t cells = 0;       ///< parts of space that may hold surface
+  std::size_t tiles = 0;       ///< parts of space that may hold surface; rays divide them into cells
+  std::size_t cells = 0;       ///< found so far
   std::size_t blocks = 0;      ///< cells that rays have entered so far
   std::size_t bytes = 0;
   double build_seconds = 0;

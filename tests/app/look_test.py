@@ -29,13 +29,13 @@ class InfoTest(ProgramTest):
         self.assertEqual([o.get("primitives") for o in info["objects"]], [1, 2, None])
         self.assertEqual(info["lights"], ["constant"])
         self.assertRegex(info["hash"], r"^[0-9a-f]{32}$")
-        for key in ("primitives", "cells", "memory_bytes"):
+        for key in ("primitives", "tiles", "memory_bytes"):
             self.assertGreater(info[key], 0)
         self.assertLess(info["bounds"]["lower"][0], info["bounds"]["upper"][0])
 
     def test_people_get_text(self):
         text = self.expect(0, "info", self.write("point.yaml", POINT)).stdout
-        for word in ("ball", "primitives", "cells", "memory", "bounds", "constant", "diffuse"):
+        for word in ("ball", "primitives", "tiles", "memory", "bounds", "constant", "diffuse"):
             self.assertIn(word, text)
 
 

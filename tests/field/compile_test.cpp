@@ -115,6 +115,28 @@ TEST(Compile, TransformsDistributeOverUnions) {
     EXPECT_GT(value(program, some_affine().point(center + Vec3d{0.1, 0, 0})), 1);
 }
 
+TEST(Compile, LeavesABlendThatIsPlacedManyTimesInItsOwnCoordinates) {
+  Builder many, once;
+  const auto a = many.blend({many.segment({{0, 0, 0}, {1, 1, 0}, 0.5, 0.3})});
+  const auto alone = many.blend({many.point({0, 9, 0}, 0.5)});
+  many.add(Union{{many.place(Affine::translate({5, 0, 0}), a), many.place(some_similarity(), a), alone}});
+  const FieldProgram program = compiled(many.description());
+  const auto parts = program.parts();
+  ASSERT_EQ(parts.size(), 3u);
+  EXPECT_NE(parts[0].shape, 0u);
+  EXPECT_EQ(parts[0].shape, parts[1].shape);
+  EXPECT_EQ(parts[2].shape, 0u);
+  EXPECT_EQ(parts[0].blend.segments.skeletons, parts[1].blend.segments.skeletons);
+  EXPECT_EQ(parts[1].world_from_local, some_similarity());
+  // The same field as that of the blend placed alone, whose map is baked into it.
+  once.place(some_similarity(), once.blend({once.segment({{0, 0, 0}, {1, 1, 0}, 0.5, 0.3})}));
+  const FieldProgram baked = compiled(once.description());
+  ASSERT_TRUE(baked.parts()[0].is_in_world());
+  const Vec3d p = some_similarity().point({0.2, 0.9, 0.3});
+  EXPECT_NEAR(evaluate_part(parts[1], p).corrected, value(baked, p), 1e-12);
+  EXPECT_LT(length(evaluate_part(parts[1], p).corrected_gradient - evaluate(baked, p).gradient), 1e-12);
+}
+
 TEST(Compile, FlattensPolylinesAndSkeletonsToSegmentsAndLoneRootsToPoints) {
   Builder builder;
   auto graph = std::make_shared<SkeletonGraph>();

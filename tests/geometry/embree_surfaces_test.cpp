@@ -98,6 +98,41 @@ TEST(EmbreeSurfaces, EqualsBruteForceUnderTransforms) {
   EXPECT_LT(worst, 2e-5);
 }
 
+// One tracer at several places gives the bits of several tracers.
+TEST(EmbreeSurfaces, PlacedAgainIsPlacedTheSame) {
+  Random random(106);
+  const BlendField blend = random_scene(random, {4, contact_alpha(4)}, 5);
+  std::vector<PlacedSolid> shared, apart;
+  std::unique_ptr<FieldSolid> first;
+  for (int i = 0; i < 4; ++i) {
+    const Affine map = Affine::translate(random.vector(2)) *
+                       Affine::rotate(normalize(random_direction(random)), random.between(0, 3)) *
+                       Affine::scale({0.7, 0.7, 0.7});
+    auto made = FieldSolid::make(placed(blend, map), MaterialId{3}, {});
+    ASSERT_TRUE(made);
+    if (i == 0) first = std::move(*FieldSolid::make(placed(blend), MaterialId{}, {}));
+    shared.push_back({first->placed_again(placed(blend, map), MaterialId{3}), ObjectId{0}});
+    apart.push_back({std::move(*made), ObjectId{0}});
+  }
+  const auto a = EmbreeSurfaces::make(std::move(shared), {}, "threads=1"),
+             b = EmbreeSurfaces::make(std::move(apart), {}, "threads=1");
+  ASSERT_TRUE(a && b);
+  int hits = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3d from = random_direction(random) * 12;
+    const Ray ray{from, normalize(random.vector(2) - from)};
+    const auto x = (*a)->first_hit(ray), y = (*b)->first_hit(ray);
+    ASSERT_EQ(x.has_value(), y.has_value());
+    if (!x) continue;
+    ++hits;
+    EXPECT_EQ(x->t, y->t);
+    EXPECT_EQ(x->normal.vec(), y->normal.vec());
+    EXPECT_EQ(x->outside, y->outside);
+    EXPECT_EQ(x->material, MaterialId{3});
+  }
+  EXPECT_GT(hits, 500);
+}
+
 // Flat boxes, and rays that run in their faces and edges.
 MeshShape small_triangles(Random& random, const Vec3d& at) {
   MeshShape mesh;
