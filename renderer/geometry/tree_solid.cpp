@@ -11,12 +11,12 @@ Result<std::unique_ptr<TreeSolid>> TreeSolid::make(FieldTree tree, MaterialId of
 std::optional<double> TreeSolid::hit(std::size_t element, const Ray& ray, bool any, ElementLog& log) const {
   CellLog cell;
   const auto found = tracer_.first_hit(element, ray, any, cell);
-  log = {cell.enter, cell.undecided, cell.evaluations};
+  log = {.enter = cell.enter, .undecided = cell.undecided, .evaluations = cell.evaluations, .place = nullptr};
   if (!found) return {};
   return found->t;
 }
 
-void TreeSolid::describe(std::size_t element, const Ray&, SurfaceHit& hit) const {
+void TreeSolid::describe(std::size_t element, const void*, const Ray&, SurfaceHit& hit) const {
   const SurfacePoint surface = tracer_.surface_at(element, hit.position);
   hit.normal = surface.normal;
   hit.outside = surface.outside;

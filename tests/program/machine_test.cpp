@@ -26,12 +26,18 @@ void on_a_small_stack(std::function<void()> work) {
   pthread_attr_destroy(&attributes);
 }
 
+FieldNodeId general(FieldDescription& field, AnyNode node, std::vector<FieldNodeId> of) {
+  FieldNode made;
+  made.what.emplace<GeneralNode>(boxed(std::move(node)), std::move(of));
+  return field.add(std::move(made));
+}
+
 FieldNodeId ball_at(FieldDescription& field, double x) {
   Sphere s;
   s.center = {x, 0, 0};
   s.radius = 0.25;
   s.potential = WyvillProfile{0.2};
-  return field.add({.what = GeneralNode{.node = boxed(s), .of = {}, .material = {}}, .where = {}});
+  return general(field, s, {});
 }
 
 // The field of a chain or a row of balls, one at each whole number below a million.
@@ -50,7 +56,7 @@ TEST(Machine, TreesMayBeAMillionDeep) {
     FieldNodeId rest = ball_at(field, 0);
     for (std::size_t i = 1; i < million; ++i) {
       const FieldNodeId one = ball_at(field, static_cast<double>(i));
-      rest = field.add({.what = GeneralNode{.node = boxed(Ricci{3}), .of = {rest, one}, .material = {}}, .where = {}});
+      rest = general(field, Ricci{3}, {rest, one});
     }
     field.root = rest;
     expect_balls(field);
@@ -60,9 +66,9 @@ TEST(Machine, TreesMayBeAMillionDeep) {
 TEST(Machine, TreesMayBeAMillionWide) {
   on_a_small_stack([] {
     FieldDescription field;
-    GeneralNode all{.node = boxed(Ricci{3}), .of = {}, .material = {}};
-    for (std::size_t i = 0; i < million; ++i) all.of.push_back(ball_at(field, static_cast<double>(i)));
-    field.root = field.add({.what = std::move(all), .where = {}});
+    std::vector<FieldNodeId> all;
+    for (std::size_t i = 0; i < million; ++i) all.push_back(ball_at(field, static_cast<double>(i)));
+    field.root = general(field, Ricci{3}, std::move(all));
     expect_balls(field);
   });
 }
@@ -74,8 +80,7 @@ TEST(Machine, SharedChildrenAreHeldOnce) {
   for (int i = 0; i < 18; ++i) {
     const FieldNodeId moved =
         field.add({.what = Transform{Affine::translate({double(1 << i), 0, 0}), below}, .where = {}});
-    below =
-        field.add({.what = GeneralNode{.node = boxed(Ricci{3}), .of = {below, moved}, .material = {}}, .where = {}});
+    below = general(field, Ricci{3}, {below, moved});
   }
   field.root = below;
   const auto program = compile(field);
