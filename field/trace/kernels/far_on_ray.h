@@ -52,9 +52,10 @@ struct FarOnRay {
   float g_curvature;  // |G''| / 2 <= this
 
   // The quartics through the values at s = -1, -1/2, 0, 1/2, 1: four of them in 16 lanes, the middle one apart.
-  FarOnRay(const FieldLevel& block, const LocalRay& ray, float t0, float t1) {
+  // Their derivatives have the rounding of the values over half the length, so that it must not be too short.
+  FarOnRay(const FieldLevel& block, const LocalRay& ray, float t0, float t1, float least_half = 1e-4F) {
     middle = 0.5F * (t0 + t1);
-    const float half = max_of(0.5F * (t1 - t0), 1e-4F);
+    const float half = max_of(0.5F * (t1 - t0), least_half);
     inverse_half = 1 / half;
     const float x = ray.origin[0] + ray.direction[0] * middle, y = ray.origin[1] + ray.direction[1] * middle,
                 z = ray.origin[2] + ray.direction[2] * middle;

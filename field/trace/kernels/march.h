@@ -27,7 +27,7 @@ struct Marcher {
   int evaluations = 0;
 
   Marcher(const BlockView& b, const FieldLevel& l, const LocalRay& r, float t0, float t1)
-      : block(b), level(l), ray(r), far(l, r, t0, t1) {}
+      : block(b), level(l), ray(r), far(l, r, t0, t1, 0.25F) {}
 
   Sample sample(float t) {
     ++evaluations;
@@ -43,7 +43,8 @@ struct Marcher {
     V16 nearest{};
     for_each_list(level, block.degree, RaySummer{probe, nearest, p.s});
     far.add(t, p.s);
-    p.distance = 0.99999F / root_of(max_of(largest_lane(nearest), 1e-12F));
+    // At most eight half sides of the block: its scale, where it lists no sources at all.
+    p.distance = 0.99999F / root_of(max_of(largest_lane(nearest), 1.0F / 64));
     const float yy = p.s.g[0] * p.s.g[0] + p.s.g[1] * p.s.g[1] + p.s.g[2] * p.s.g[2], y = root_of(yy);
     const float dy = (p.s.g[0] * p.s.dg[0] + p.s.g[1] * p.s.dg[1] + p.s.g[2] * p.s.dg[2]) / max_of(y, 1e-12F);
     const IsoCurve::View& iso = block.iso;

@@ -33,7 +33,7 @@ PointField point_field(const FieldLevel& level, int degree, const float p[3]) {
   out.f = s.f + far[0];
   out.second = s.second;
   out.third = s.third;
-  out.nearest = 1 / root_of(max_of(largest_lane(nearest), 1e-12F));
+  out.nearest = 1 / root_of(max_of(largest_lane(nearest), 1.0F / 64));  // as in march.h
   for (int i = 0; i < 3; ++i) {
     out.gradient[i] = s.df[i] + d[i][0];
     out.si_gradient[i] = s.g[i] + far[i + 1];
