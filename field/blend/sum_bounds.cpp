@@ -78,17 +78,19 @@ void SumBounds::add(const SkeletonSample& s, double distance, double radius, int
   S_error_ += sample_error * (m * s.value * radius / distance);
 }
 
-void SumBounds::add_between(const Interval& f, double S_norm, double log_slope) {
-  log_slope_ = std::max(log_slope_, log_slope);
+void SumBounds::add(const Between& b) {
+  const Interval& f = b.f;
+  log_slope_ = std::max(log_slope_, b.log_slope);
   has_slopes_ = false;
   low_ += std::max(0.0, f.lo);
-  if (!(f.hi < inf) || !(S_norm < inf)) {
+  if (!(f.hi < inf)) {
     unbounded_ = true;
     return;
   }
   f_ += f.middle();
   error_ += 0.5 * f.width() * (1 + 1e-15) + 1e-15 * f.hi;
-  S_error_ += S_norm;
+  S_ += b.S;
+  S_error_ += b.S_by;
 }
 
 Interval SumBounds::side(std::size_t i) const { return Interval(box_.lower[i], box_.upper[i]) - Interval(center_[i]); }
@@ -134,13 +136,16 @@ void SumBounds::add_inverse(const BlendField& blend) {
   for (const auto& s : blend.cani_hornus_segments.skeletons) {
     const double f = cani_hornus_field<Derivatives::ScaleInvariant>(s, p).value, d = distance_to(s, p);
     if (!(d > rho_) || !std::isfinite(f)) {
-      add_between({0, inf}, inf, inf);
+      add({.f = {0, inf}, .S_by = inf, .log_slope = inf});
       continue;
     }
     const double slope = std::fabs(s.radius_to - s.radius_from) / length(s.to - s.from), q = rho_ / d;
     const double wider = std::min(1 + slope * rho_ / least(s), largest(s) / least(s)) * (1 + 1e-9);
-    add_between({f / (wider * wider * integer_power(1 + q, 3)), f * wider * wider / integer_power(1 - q, 3)}, inf,
-                (3 / (d - rho_) + 2 * slope / least(s)) * (1 + 1e-9));
+    const double high = f * wider * wider / integer_power(1 - q, 3);
+    // |grad_S f| = R^3 |grad I| <= 3 R f / d
+    add({.f = {f / (wider * wider * integer_power(1 + q, 3)), high},
+         .S_by = 3 * largest(s) * high / (d - rho_) * (1 + 1e-9),
+         .log_slope = (3 / (d - rho_) + 2 * slope / least(s)) * (1 + 1e-9)});
   }
 }
 
@@ -171,7 +176,7 @@ void SumBounds::add_compact(const BlendField& blend) {
       if (distance_to(s, center_) > rho_ + reach) continue;
       const double f = field(s).value, per_length = steep * share(s, reach) / least(s) * (1 + 1e-9);
       const double by = per_length * rho_ + 1e-10 * f;
-      add_between({std::max(0.0, f - by), f + by}, per_length * largest(s), inf);
+      add({.f = {std::max(0.0, f - by), f + by}, .S_by = per_length * largest(s), .log_slope = inf});
     }
   };
   constexpr auto value = Derivatives::ScaleInvariant;
@@ -184,27 +189,43 @@ void SumBounds::add_compact(const BlendField& blend) {
 
 namespace {
 
-struct DistanceBounds {
-  Interval f;
-  double S_norm, log_slope;
-};
+// How far the unit vector from the nearest point of the skeleton turns over rho: level surfaces of e are those of
+// convex bodies, flat, round or conical, and curve no more than a ball of the distance, over the cosine of the cone's
+// slope. Not known for arcs, whose nearest point may jump.
+double turn(const SegmentSkeleton& s, double distance, double rho) {
+  const double slope = (s.radius_to - s.radius_from) / length(s.to - s.from);
+  return 2 * rho / (distance - rho) / std::sqrt(std::max(0.0, 1 - slope * slope));
+}
+double turn(const TriangleSkeleton& s, double distance, double rho) {
+  return s.radii[0] == s.radii[1] && s.radii[1] == s.radii[2] ? 2 * rho / (distance - rho) : inf;
+}
+double turn(const ArcSkeleton&, double, double) { return inf; }
 
 // e = min d / radius changes by rho / radius at most, f = k(e), |S| = |k'(e)|.
 template <class Skeleton>
-DistanceBounds distance_bounds(const Skeleton& s, const SumBounds& sum, const Kernel& kernel) {
-  const double f = distance_field<Derivatives::ScaleInvariant>(s, sum.center(), kernel).value;
-  const double moved = sum.rho() / least(s);
+SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, const Kernel& kernel) {
+  const SkeletonSample sample = distance_field<Derivatives::ScaleInvariant>(s, sum.center(), kernel);
+  const double f = sample.value, moved = sum.rho() / least(s), distance = distance_to(s, sum.center());
   if (kernel.family != KernelFamily::Inverse) {
     const double steep = steepest(Profile(kernel, 0), kernel) * (1 + 1e-9), by = steep * moved + 1e-10 * f;
-    return {{std::max(0.0, f - by), f + by}, steep, f > by ? steep / (least(s) * (f - by)) : inf};
+    return {
+        .f = {std::max(0.0, f - by), f + by}, .S_by = steep, .log_slope = f > by ? steep / (least(s) * (f - by)) : inf};
   }
   const int n = kernel.degree;
   const double e = std::isfinite(f) ? pow(f, -1.0 / (n - 1)) : 0, by = moved + 1e-10 * e;
   const double near = e - by, far = e + by;
-  if (!(near > 0)) return {{(1 - 1e-10) / integer_power(far, n - 1), inf}, inf, inf};
-  return {{(1 - 1e-10) / integer_power(far, n - 1), (1 + 1e-10) / integer_power(near, n - 1)},
-          (n - 1) * (1 + 1e-10) / integer_power(near, n),
-          (n - 1) * (1 + 1e-10) / (near * least(s))};
+  if (!(near > 0)) return {.f = {(1 - 1e-10) / integer_power(far, n - 1), inf}, .S_by = inf, .log_slope = inf};
+  const double S_high = (n - 1) * (1 + 1e-10) / integer_power(near, n);
+  SumBounds::Between b{.f = {(1 - 1e-10) / integer_power(far, n - 1), (1 + 1e-10) / integer_power(near, n - 1)},
+                       .S_by = S_high,
+                       .log_slope = (n - 1) * (1 + 1e-10) / (near * least(s))};
+  const double turned = distance > sum.rho() ? turn(s, distance, sum.rho()) : inf;
+  if (turned < 1) {
+    const double S_low = (n - 1) * (1 - 1e-10) / integer_power(far, n);
+    b.S = normalize(sample.si_gradient) * (0.5 * (S_low + S_high));
+    b.S_by = (0.5 * (S_high - S_low) + S_high * turned) * (1 + 1e-9);
+  }
+  return b;
 }
 
 }  // namespace
@@ -213,23 +234,24 @@ void SumBounds::add_distances(const BlendField& blend) {
   const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
   const auto& list = blend.distance_segments;
   for (std::size_t i = 0; i < list.size();) {
-    // The largest of a strand counts.
-    DistanceBounds all = distance_bounds(list.skeletons[i], *this, kernel);
+    // The largest of a strand counts; where several may be that, all that is known of S is its length.
+    Between all = distance_bounds(list.skeletons[i], *this, kernel);
     const std::size_t first = i++;
     for (; !list.strands.empty() && i < list.size() && list.strands[i] == list.strands[first]; ++i) {
-      const DistanceBounds other = distance_bounds(list.skeletons[i], *this, kernel);
-      all = {max(all.f, other.f), std::max(all.S_norm, other.S_norm), std::max(all.log_slope, other.log_slope)};
+      const Between other = distance_bounds(list.skeletons[i], *this, kernel);
+      if (other.f.hi < all.f.lo) continue;
+      if (all.f.hi < other.f.lo) {
+        all = other;
+        continue;
+      }
+      all = {.f = max(all.f, other.f),
+             .S_by = std::max(length(all.S) + all.S_by, length(other.S) + other.S_by),
+             .log_slope = std::max(all.log_slope, other.log_slope)};
     }
-    add_between(all.f, all.S_norm, all.log_slope);
+    add(all);
   }
-  const auto add_all = [&](const auto& skeletons) {
-    for (const auto& s : skeletons) {
-      const DistanceBounds b = distance_bounds(s, *this, kernel);
-      add_between(b.f, b.S_norm, b.log_slope);
-    }
-  };
-  add_all(blend.distance_triangles.skeletons);
-  add_all(blend.distance_arcs.skeletons);
+  for (const auto& s : blend.distance_triangles.skeletons) add(distance_bounds(s, *this, kernel));
+  for (const auto& s : blend.distance_arcs.skeletons) add(distance_bounds(s, *this, kernel));
 }
 
 }  // namespace marrow

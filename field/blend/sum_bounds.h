@@ -18,8 +18,14 @@ class SumBounds {
   /// to `radius`. Its k-th derivatives are at most m (m+1) ... (m+k-1) / distance^k times itself, and within rho of the
   /// middle all distances shrink by 1 - rho / distance at most.   [tracing 3.1]
   void add(const SkeletonSample&, double distance, double radius, int m);
-  /// A primitive of which only bounds of f and of |S| are known, and that of |grad ln f|.
-  void add_between(const Interval& f, double S_norm, double log_slope);
+  /// A primitive of which only bounds are known.
+  struct Between {
+    Interval f;
+    Vec3d S{};         ///< its scale-invariant gradient is this
+    double S_by = 0;   ///< up to a vector of this length
+    double log_slope;  ///< of |grad ln f|
+  };
+  void add(const Between&);
 
   const Vec3d& center() const { return center_; }
   /// Half the diagonal of the box.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace marrow {
 namespace {
@@ -11,6 +12,7 @@ using OnRay = Jet<Interval, 1>;
 
 // Bounds that do not shrink with the piece could be halved for ever. What is left then is reported as undecided.
 constexpr std::uint32_t most_evaluations = 2000;
+constexpr double inf = std::numeric_limits<double>::infinity();
 
 class Search {
  public:
@@ -34,6 +36,8 @@ class Search {
         open[count++] = {piece.begin, *middle, piece.starts_inside, middle_inside};
       }
     }
+    // A gap that ends at the crossing is the crossing itself, as exactly as sums are known.
+    if (found_.t && *found_.t - found_.undecided <= 16 * gap(*found_.t)) found_.undecided = inf;
     return found_;
   }
 
@@ -85,18 +89,19 @@ class Search {
     return {};
   }
 
-  // 16 ulps of t, or of the coordinates that the ray runs through.
-  bool is_short(const Piece& piece) const {
-    const double size = std::max({std::fabs(piece.begin), std::fabs(piece.end), max_component(abs(ray_.origin))});
-    return piece.end - piece.begin <= 16 * rounding::ulp * size;
-  }
+  // Of t, or of the coordinates that the ray runs through.
+  double size(double t) const { return std::max(std::fabs(t), max_component(abs(ray_.origin))); }
+  // Sums of a blend are known to 3e-11 of themselves: shorter pieces than 2^-34 (6e-11) say nothing new. It is far
+  // below the ulp of a float.
+  double gap(double t) const { return 0x1p-34 * size(t); }
+  bool is_short(const Piece& piece) const { return piece.end - piece.begin <= gap(piece.end); }
 
   // The one change of side, by regula falsi that halves the weight of an end that stays (the Illinois rule), with
   // halving where that is slow. The end on the far side is returned: t is never before the surface.
   double placed(Piece piece) {
     double a = piece.begin, b = piece.end, fa = at(a) - 1, fb = at(b) - 1;
     int stays = 0;
-    for (int step = 0; step < 200 && !is_short({a, b, false, false}); ++step) {
+    for (int step = 0; step < 200 && b - a > 16 * rounding::ulp * size(b); ++step) {
       double t = step % 4 == 3 ? a + 0.5 * (b - a) : b - fb * (b - a) / (fb - fa);
       if (!(t > a && t < b)) t = a + 0.5 * (b - a);
       if (!(t > a && t < b)) break;

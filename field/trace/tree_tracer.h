@@ -27,7 +27,7 @@ class TreeTracer {
   const Box3& cell_box(std::size_t cell) const { return cells_[cell].box; }
 
   /// The first crossing of the surface, from either side, inside a cell with t in [ray.t_min, ray.t_max]; t does not
-  /// depend on ray.t_max. With `any`, any crossing. `undecided` of the log: a gap of some ulps, without a change of
+  /// depend on ray.t_max. With `any`, any crossing. `undecided` of the log: a gap of 2^-34 of t, without a change of
   /// side from end to end, in which no bound excludes a touch.
   std::optional<CellHit> first_hit(std::size_t cell, const Ray&, bool any, CellLog&) const;
   SurfacePoint surface_at(std::size_t cell, const Vec3d& position) const;

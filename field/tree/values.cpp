@@ -3,10 +3,38 @@
 
 namespace marrow {
 
+namespace {
+
+// The machine of a thread, with its stacks; a tree inside a tree (a field that steers the angle of a blend) gets a
+// fresh one.
+template <Number X>
+class BorrowedMachine {
+ public:
+  BorrowedMachine() : owner_(!is_taken_) { is_taken_ = true; }
+  ~BorrowedMachine() {
+    if (owner_) is_taken_ = false;
+  }
+  BorrowedMachine(const BorrowedMachine&) = delete;
+  BorrowedMachine& operator=(const BorrowedMachine&) = delete;
+  tree::Machine<X, X>& get() { return owner_ ? of_thread_ : fresh_; }
+
+ private:
+  static thread_local tree::Machine<X, X> of_thread_;
+  static thread_local bool is_taken_;
+  bool owner_;
+  tree::Machine<X, X> fresh_;
+};
+template <Number X>
+thread_local tree::Machine<X, X> BorrowedMachine<X>::of_thread_;
+template <Number X>
+thread_local bool BorrowedMachine<X>::is_taken_ = false;
+
+}  // namespace
+
 template <Number X>
 X value(const FieldTree& tree, const Vec3<X>& p) {
-  thread_local tree::Machine<X, X> machine;
-  return machine.run(tree, p, X(0.0), [&](std::uint32_t record, const Vec3<X>& at, std::span<const X> children) {
+  BorrowedMachine<X> machine;
+  return machine.get().run(tree, p, X(0.0), [&](std::uint32_t record, const Vec3<X>& at, std::span<const X> children) {
     return tree::value_of_node(tree.node(tree.records()[record]), at, children);
   });
 }
