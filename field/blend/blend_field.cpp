@@ -71,9 +71,7 @@ double corrected_value(const BlendField& blend, const Vec3d& p) {
 }
 
 std::string untraceable_part(const BlendField& blend) {
-  const auto evaluated_only = [](const std::string& what) {
-    return what + " can be evaluated (probe, slice) but not rendered by this version";
-  };
+  const auto evaluated_only = [](const std::string& what) { return what + " is not known to the tracer of blends"; };
   if (blend.kernel == KernelFamily::Cauchy) return evaluated_only("`kernel: {cauchy: …}`");
   if (blend.kernel == KernelFamily::Compact) return evaluated_only("`kernel: {compact: …}`");
   if (!blend.distance_segments.empty() || !blend.distance_triangles.empty() || !blend.distance_arcs.empty())

@@ -116,7 +116,8 @@ Correction correction_of(const BlendField&);
 /// Where the sum is 0 or infinite: the alpha of the blend, without gradient.
 AlphaSample alpha_at(const BlendField&, const Vec3d& p);
 
-/// What of a blend the ray tracer has no bounds for, as a message; empty when it can trace all of it.
+/// What of a blend the tracer of blends has no bounds for, as a message; empty when it can trace all of it. The tracer
+/// of general trees takes any blend.
 std::string untraceable_part(const BlendField&);
 
 /// Material of the primitive with the largest f_i at p; invalid means the object's own.

@@ -22,7 +22,8 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root, point_field, stretches, cube_bounds, lattice_values, lattice_marks, far_moments, far_split, octant_bounds};
+  static constexpr BlockKernels kernels{first_root,    point_field, stretches, cube_bounds,  lattice_values,
+                                        lattice_marks, far_moments, far_split, octant_bounds};
   return kernels;
 }
 

@@ -11,8 +11,9 @@
 namespace marrow {
 
 struct CrossingSearch {
-  std::optional<double> t;                                     ///< of the crossing
-  double undecided = std::numeric_limits<double>::infinity();  ///< where a gap of 2^-34 of t begins that nothing could decide
+  std::optional<double> t;  ///< of the crossing
+  double undecided =
+      std::numeric_limits<double>::infinity();  ///< where a gap of 2^-34 of t begins that nothing could decide
   std::uint32_t evaluations = 0;
 };
 

@@ -44,11 +44,9 @@ const Table<WrittenKernel>& kernel_table() {
   static const Table<WrittenKernel> table = [] {
     Table<WrittenKernel> made(
         "kernel", "The kernel of a blend; its degree says how far skeletons feel each other.",
-        {kernel_degree_key("inverse", KernelFamily::Inverse, "x^-m of this degree: everything can be rendered with it"),
-         kernel_degree_key("cauchy", KernelFamily::Cauchy,
-                           "(1 + scale^2 x^2)^(-m/2), finite on skeletons; `probe` and `slice` only"),
-         kernel_degree_key("compact", KernelFamily::Compact,
-                           "(1 - x^2/support^2)^(m/2), 0 beyond; `probe` and `slice` only"),
+        {kernel_degree_key("inverse", KernelFamily::Inverse, "x^-m of this degree: lines of it are rendered fastest"),
+         kernel_degree_key("cauchy", KernelFamily::Cauchy, "(1 + scale^2 x^2)^(-m/2), finite on skeletons"),
+         kernel_degree_key("compact", KernelFamily::Compact, "(1 - x^2/support^2)^(m/2), 0 beyond"),
          key<WrittenKernel>("scale", &WrittenKernel::scale, number(between(0.01, 100)), "of `cauchy`; 1 when left out"),
          key<WrittenKernel>("support", &WrittenKernel::support, number(between(1.01, 100)),
                             "of `compact`, in radii; 2 when left out; below 1.6 for topology control")},

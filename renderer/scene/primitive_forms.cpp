@@ -52,7 +52,7 @@ const Table<Drawn<SegmentSkeleton>>& segment_table() {
 const Table<Drawn<TriangleSkeleton>>& triangle_table() {
   using Triangle = Drawn<TriangleSkeleton>;
   static const Table<Triangle> table(
-      "triangle", "A plate around a triangle whose thickness changes evenly. `probe` and `slice` only, for now.",
+      "triangle", "A plate around a triangle whose thickness changes evenly.",
       with_common_keys<TriangleSkeleton>(
           {key<Triangle>(
                "vertices",
@@ -104,8 +104,7 @@ const Table<Drawn<Round>>& circle_table() {
   keys.push_back(key<Circle>(
       "radius", [](Circle& c, double r) { c.radius_from = c.radius_to = r; }, number(any_radius()),
       "of the tube; 1 when left out"));
-  static const Table<Circle> table("circle", "A ring. `probe` and `slice` only, for now.",
-                                   with_common_keys<Round>(std::move(keys)), round_fits);
+  static const Table<Circle> table("circle", "A ring.", with_common_keys<Round>(std::move(keys)), round_fits);
   return table;
 }
 
@@ -126,8 +125,7 @@ const Table<Drawn<Round>>& arc_table() {
         a.radius_to = r.back();
       },
       radii(2, 2, "a radius above 0, or two: [at the begin, at the end]"), "of the tube; 1 when left out"));
-  static const Table<Arc> table("arc",
-                                "A part of a ring whose radius changes evenly. `probe` and `slice` only, for now.",
+  static const Table<Arc> table("arc", "A part of a ring whose radius changes evenly.",
                                 with_common_keys<Round>(std::move(keys)), round_fits);
   return table;
 }
