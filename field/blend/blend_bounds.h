@@ -16,7 +16,8 @@ struct BlendBounds {
 /// Boxes that reach a skeleton have no upper bound.
 BlendBounds blend_bounds(const BlendField&, const Box3&);
 
-/// The box outside which the corrected field is below `level` > 0.
+/// The box outside which the corrected field is below `level`, or 0 for level = 0: all of space but for the compact
+/// kernel.
 Box3 blend_extent(const BlendField&, double level);
 
 }  // namespace marrow

@@ -51,6 +51,9 @@ std::vector<Tail> tails(const BlendField& blend) {
 Box3 blend_extent(const BlendField& blend, double level) {
   const Box3 skeletons = skeleton_bounds(blend);
   if (skeletons.empty()) return skeletons;
+  if (blend.kernel == KernelFamily::Compact)
+    return skeletons.padded(blend.kernel_shape * largest_radius(blend) * (1 + 1e-12));
+  if (!(level > 0)) return {{-Box3::inf, -Box3::inf, -Box3::inf}, {Box3::inf, Box3::inf, Box3::inf}};
   const std::vector<Tail> all = tails(blend);
   // Whatever alpha is: from 0 on C lies between f and the curve at G, below 0 it is twice that at most.
   const Correction along_f({blend.kernel, blend.degree, blend.kernel_shape}, 0, blend.cavity, blend.projection);

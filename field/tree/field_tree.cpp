@@ -16,7 +16,7 @@ constexpr Box3 all_space{{-inf, -inf, -inf}, {inf, inf, inf}};
 Box3 reach_of(const TreeNode& node, std::span<const Box3> children, double level) {
   return std::visit(
       [&]<class Node>(const Node& n) -> Box3 {
-        if constexpr (std::same_as<Node, BlendLeaf>) return level > 0 ? blend_extent(*n.field, level) : all_space;
+        if constexpr (std::same_as<Node, BlendLeaf>) return blend_extent(*n.field, level);
         else if constexpr (requires { n.extent(level); }) return level > 0 ? n.extent(level) : n.support();
         else if constexpr (requires { n.support(); }) return n.support();
         else if constexpr (requires { n.support(children[0]); }) return n.support(children[0]);

@@ -79,6 +79,19 @@ TEST(BlendBounds, NarrowWithTheBox) {
   }
 }
 
+TEST(BlendExtent, TheCompactKernelEndsAtItsSupport) {
+  BlendField blend;
+  blend.kernel = KernelFamily::Compact;
+  blend.kernel_shape = 2;
+  blend.points.add({{1, 0, 0}, 0.5}, {});
+  const Box3 box = blend_extent(blend, 0);
+  EXPECT_LT(length(box.lower - Vec3d{0, -1, -1}), 1e-11);
+  EXPECT_LT(length(box.upper - Vec3d{2, 1, 1}), 1e-11);
+  EXPECT_EQ(corrected_value(blend, {2.001, 0, 0}), 0);
+  blend.kernel = KernelFamily::Inverse;
+  EXPECT_EQ(blend_extent(blend, 0).upper.x, Box3::inf);
+}
+
 TEST(BlendExtent, IsBelowTheLevelOutside) {
   Random random(53);
   for (int i = 0; i < 300; ++i) {
