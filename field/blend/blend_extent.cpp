@@ -6,6 +6,7 @@
 #include "field/blend/blend_bounds.h"
 #include "field/kernel/inverse_family.h"
 #include "field/kernel/profile.h"
+#include "field/skeleton/radii.h"
 
 namespace marrow {
 namespace {
@@ -15,9 +16,6 @@ struct Tail {
   double mass, radius;
   int m;
 };
-double largest(const SegmentSkeleton& s) { return std::max(s.radius_from, s.radius_to); }
-double largest(const ArcSkeleton& s) { return std::max(s.radius_from, s.radius_to); }
-double largest(const TriangleSkeleton& s) { return std::max({s.radii[0], s.radii[1], s.radii[2]}); }
 
 std::vector<Tail> tails(const BlendField& blend) {
   const int n = blend.degree;
@@ -36,13 +34,13 @@ std::vector<Tail> tails(const BlendField& blend) {
   };
   for (const auto& s : blend.points.skeletons) add(s.radius, 1, 0);
   for (const auto* list : {&blend.segments, &blend.cani_hornus_segments})
-    for (const auto& s : list->skeletons) add(largest(s), length(s.to - s.from), 1);
-  for (const auto& s : blend.arcs.skeletons) add(largest(s), s.major * (s.end - s.begin), 1);
+    for (const auto& s : list->skeletons) add(largest_radius(s), length(s.to - s.from), 1);
+  for (const auto& s : blend.arcs.skeletons) add(largest_radius(s), s.major * (s.end - s.begin), 1);
   for (const auto& s : blend.triangles.skeletons)
-    add(largest(s), 0.5 * length(cross(s.vertices[1] - s.vertices[0], s.vertices[2] - s.vertices[0])), 2);
-  for (const auto& s : blend.distance_segments.skeletons) add(largest(s), 1, 0);
-  for (const auto& s : blend.distance_triangles.skeletons) add(largest(s), 1, 0);
-  for (const auto& s : blend.distance_arcs.skeletons) add(largest(s), 1, 0);
+    add(largest_radius(s), 0.5 * length(cross(s.vertices[1] - s.vertices[0], s.vertices[2] - s.vertices[0])), 2);
+  for (const auto& s : blend.distance_segments.skeletons) add(largest_radius(s), 1, 0);
+  for (const auto& s : blend.distance_triangles.skeletons) add(largest_radius(s), 1, 0);
+  for (const auto& s : blend.distance_arcs.skeletons) add(largest_radius(s), 1, 0);
   return all;
 }
 

@@ -5,6 +5,7 @@
 
 #include "field/kernel/profile.h"
 #include "field/skeleton/distance.h"
+#include "field/skeleton/radii.h"
 #include "field/skeleton/skeletons.h"
 
 namespace marrow {
@@ -16,22 +17,15 @@ constexpr double sample_error = 3e-11;
 
 Interval pad(double x, double by) { return {rounding::down(x - by), rounding::up(x + by)}; }
 
-double largest(const PointSkeleton& s) { return s.radius; }
-double largest(const SegmentSkeleton& s) { return std::max(s.radius_from, s.radius_to); }
-double largest(const ArcSkeleton& s) { return std::max(s.radius_from, s.radius_to); }
-double largest(const TriangleSkeleton& s) { return std::max({s.radii[0], s.radii[1], s.radii[2]}); }
-double least(const PointSkeleton& s) { return s.radius; }
-double least(const SegmentSkeleton& s) { return std::min(s.radius_from, s.radius_to); }
-double least(const ArcSkeleton& s) { return std::min(s.radius_from, s.radius_to); }
-double least(const TriangleSkeleton& s) { return std::min({s.radii[0], s.radii[1], s.radii[2]}); }
-
 // What a primitive can hold of its skeleton within a distance, over a radius to the power of its dimension.
 double share(const PointSkeleton&, double) { return 1; }
-double share(const SegmentSkeleton& s, double reach) { return std::min(length(s.to - s.from), 2 * reach) / least(s); }
-double share(const ArcSkeleton& s, double) { return s.major * (s.end - s.begin) / least(s); }
+double share(const SegmentSkeleton& s, double reach) {
+  return std::min(length(s.to - s.from), 2 * reach) / least_radius(s);
+}
+double share(const ArcSkeleton& s, double) { return s.major * (s.end - s.begin) / least_radius(s); }
 double share(const TriangleSkeleton& s, double reach) {
   const double area = 0.5 * length(cross(s.vertices[1] - s.vertices[0], s.vertices[2] - s.vertices[0]));
-  return std::min(area, 3.2 * reach * reach) / (least(s) * least(s));
+  return std::min(area, 3.2 * reach * reach) / (least_radius(s) * least_radius(s));
 }
 
 // sup |k'| over the scaled distance of a normalised kernel.
@@ -127,11 +121,13 @@ void SumBounds::add_inverse(const BlendField& blend) {
   const int n = blend.degree;
   const Vec3d& p = center_;
   constexpr auto all = Derivatives::Second;
-  for (const auto& s : blend.points.skeletons) add(point_field<all>(s, p, n), distance_to(s, p), largest(s), n - 1);
-  for (const auto& s : blend.segments.skeletons) add(segment_field<all>(s, p, n), distance_to(s, p), largest(s), n);
+  for (const auto& s : blend.points.skeletons)
+    add(point_field<all>(s, p, n), distance_to(s, p), largest_radius(s), n - 1);
+  for (const auto& s : blend.segments.skeletons)
+    add(segment_field<all>(s, p, n), distance_to(s, p), largest_radius(s), n);
   for (const auto& s : blend.triangles.skeletons)
-    add(triangle_field<all>(s, p, n), distance_to(s, p), largest(s), n + 1);
-  for (const auto& s : blend.arcs.skeletons) add(arc_field<all>(s, p, n), distance_to(s, p), largest(s), n);
+    add(triangle_field<all>(s, p, n), distance_to(s, p), largest_radius(s), n + 1);
+  for (const auto& s : blend.arcs.skeletons) add(arc_field<all>(s, p, n), distance_to(s, p), largest_radius(s), n);
   // R(H)^2 times a positive sum of |p - q|^-3, and H moves no faster than p: R changes by its slope times rho at most.
   for (const auto& s : blend.cani_hornus_segments.skeletons) {
     const double f = cani_hornus_field<Derivatives::ScaleInvariant>(s, p).value, d = distance_to(s, p);
@@ -140,12 +136,12 @@ void SumBounds::add_inverse(const BlendField& blend) {
       continue;
     }
     const double slope = std::fabs(s.radius_to - s.radius_from) / length(s.to - s.from), q = rho_ / d;
-    const double wider = std::min(1 + slope * rho_ / least(s), largest(s) / least(s)) * (1 + 1e-9);
+    const double wider = std::min(1 + slope * rho_ / least_radius(s), largest_radius(s) / least_radius(s)) * (1 + 1e-9);
     const double high = f * wider * wider / integer_power(1 - q, 3);
     // |grad_S f| = R^3 |grad I| <= 3 R f / d
     add({.f = {f / (wider * wider * integer_power(1 + q, 3)), high},
-         .S_by = 3 * largest(s) * high / (d - rho_) * (1 + 1e-9),
-         .log_slope = (3 / (d - rho_) + 2 * slope / least(s)) * (1 + 1e-9)});
+         .S_by = 3 * largest_radius(s) * high / (d - rho_) * (1 + 1e-9),
+         .log_slope = (3 / (d - rho_) + 2 * slope / least_radius(s)) * (1 + 1e-9)});
   }
 }
 
@@ -154,15 +150,16 @@ void SumBounds::add_cauchy(const BlendField& blend) {
   const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
   const Vec3d& p = center_;
   const auto lifted = [&](const auto& s) {
-    const double d = distance_to(s, p), w = least(s) / blend.kernel_shape;
+    const double d = distance_to(s, p), w = least_radius(s) / blend.kernel_shape;
     return std::sqrt(d * d + w * w);
   };
   constexpr auto all = Derivatives::Second;
   const int n = blend.degree;
-  for (const auto& s : blend.points.skeletons) add(point_field<all>(s, p, kernel), lifted(s), largest(s), n - 1);
-  for (const auto& s : blend.segments.skeletons) add(segment_field<all>(s, p, kernel), lifted(s), largest(s), n);
-  for (const auto& s : blend.triangles.skeletons) add(triangle_field<all>(s, p, kernel), lifted(s), largest(s), n + 1);
-  for (const auto& s : blend.arcs.skeletons) add(arc_field<all>(s, p, kernel), lifted(s), largest(s), n);
+  for (const auto& s : blend.points.skeletons) add(point_field<all>(s, p, kernel), lifted(s), largest_radius(s), n - 1);
+  for (const auto& s : blend.segments.skeletons) add(segment_field<all>(s, p, kernel), lifted(s), largest_radius(s), n);
+  for (const auto& s : blend.triangles.skeletons)
+    add(triangle_field<all>(s, p, kernel), lifted(s), largest_radius(s), n + 1);
+  for (const auto& s : blend.arcs.skeletons) add(arc_field<all>(s, p, kernel), lifted(s), largest_radius(s), n);
 }
 
 // f changes by rho sup |k'| times the share of the skeleton that the support can hold.
@@ -172,11 +169,11 @@ void SumBounds::add_compact(const BlendField& blend) {
     const Profile profile(kernel, dimension);
     const double steep = steepest(profile, kernel);
     for (const auto& s : skeletons) {
-      const double reach = kernel.shape * largest(s);
+      const double reach = kernel.shape * largest_radius(s);
       if (distance_to(s, center_) > rho_ + reach) continue;
-      const double f = field(s).value, per_length = steep * share(s, reach) / least(s) * (1 + 1e-9);
+      const double f = field(s).value, per_length = steep * share(s, reach) / least_radius(s) * (1 + 1e-9);
       const double by = per_length * rho_ + 1e-10 * f;
-      add({.f = {std::max(0.0, f - by), f + by}, .S_by = per_length * largest(s), .log_slope = inf});
+      add({.f = {std::max(0.0, f - by), f + by}, .S_by = per_length * largest_radius(s), .log_slope = inf});
     }
   };
   constexpr auto value = Derivatives::ScaleInvariant;
@@ -205,11 +202,12 @@ double turn(const ArcSkeleton&, double, double) { return inf; }
 template <class Skeleton>
 SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, const Kernel& kernel) {
   const SkeletonSample sample = distance_field<Derivatives::ScaleInvariant>(s, sum.center(), kernel);
-  const double f = sample.value, moved = sum.rho() / least(s), distance = distance_to(s, sum.center());
+  const double f = sample.value, moved = sum.rho() / least_radius(s), distance = distance_to(s, sum.center());
   if (kernel.family != KernelFamily::Inverse) {
     const double steep = steepest(Profile(kernel, 0), kernel) * (1 + 1e-9), by = steep * moved + 1e-10 * f;
-    return {
-        .f = {std::max(0.0, f - by), f + by}, .S_by = steep, .log_slope = f > by ? steep / (least(s) * (f - by)) : inf};
+    return {.f = {std::max(0.0, f - by), f + by},
+            .S_by = steep,
+            .log_slope = f > by ? steep / (least_radius(s) * (f - by)) : inf};
   }
   const int n = kernel.degree;
   const double e = std::isfinite(f) ? pow(f, -1.0 / (n - 1)) : 0, by = moved + 1e-10 * e;
@@ -218,7 +216,7 @@ SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, cons
   const double S_high = (n - 1) * (1 + 1e-10) / integer_power(near, n);
   SumBounds::Between b{.f = {(1 - 1e-10) / integer_power(far, n - 1), (1 + 1e-10) / integer_power(near, n - 1)},
                        .S_by = S_high,
-                       .log_slope = (n - 1) * (1 + 1e-10) / (near * least(s))};
+                       .log_slope = (n - 1) * (1 + 1e-10) / (near * least_radius(s))};
   const double turned = distance > sum.rho() ? turn(s, distance, sum.rho()) : inf;
   if (turned < 1) {
     const double S_low = (n - 1) * (1 - 1e-10) / integer_power(far, n);
