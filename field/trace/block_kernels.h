@@ -101,6 +101,7 @@ struct OctantBounds {
   float f_low = 0;
   float weight = 0, weighted_radius = 0;  ///< fields of the pieces at the centre, and the same times their radii
   bool touches = false;                   ///< a piece comes into the ball
+  float thinness = 0;                     ///< 1 / radius of the thinnest piece within four of its radii of the ball
 };
 
 /// The error of a lattice's polynomial for one source at the distance d from the centre of a cube, both over its half
