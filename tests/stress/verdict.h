@@ -42,7 +42,7 @@ struct Verdict {
 
 /// A stretch inside counts as missed if the corrected field gets this far above 1 on it: the traced field may differ by
 /// 1e-5 of the radius, times the slope of some n - 1 over a radius.
-inline constexpr double grazing_excess = 5e-5;
+inline constexpr double grazing_excess = 1e-5;
 /// Allowed distance of a hit from the exact surface, over the distance to the skeleton.
 inline constexpr double allowed_displacement = 2e-5;
 
