@@ -90,10 +90,10 @@ struct PointField {
 
 inline constexpr int far_moment_count = 80;  ///< see FarMoments
 
-inline constexpr int floats_per_piece_group = 12 * lanes;
+inline constexpr int floats_per_piece_group = 13 * lanes;
 ///< from xyz, along xyz, 1 / length^2 (0 for a point), share = mass / tau^m, radius at the end less that at `from`,
-///< tau (the larger), length, reach. Sources are within `reach` of the segment, within `length` of its nearest point.
-///< Unused lanes have share 0.
+///< tau (the larger), length, reach, least radius of a group's pieces. Sources are within `reach` of the segment,
+///< within `length` of its nearest point. Unused lanes have share 0.
 
 /// Bounds over the ball around one octant of a cube, in the cube's coordinates.
 struct OctantBounds {

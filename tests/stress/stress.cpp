@@ -101,8 +101,11 @@ bool judged(const Outcome& all) {
   const auto share = [](std::uint64_t a, std::uint64_t b) { return b == 0 ? 0 : 100 * double(a) / double(b); };
   fmt::print(
       "hits are off the exact surface by at most {:.3g} of the distance to the skeleton\n"
-      "t within 4 ulp of float: {:.4f} % of {} hits at no grazing angle, {:.3g} ulp at most\n",
-      total.largest_displacement, share(total.within_4_ulp, total.measured), total.measured, total.largest_ulps);
+      "t within 4 ulp of float: {:.4f} % of {} hits at no grazing angle, {:.3g} ulp at most; {} of the {} where "
+      "rounding "
+      "of a float sum is not more\n",
+      total.largest_displacement, share(total.within_4_ulp, total.measured), total.measured, total.largest_ulps,
+      total.conditioned_within_4_ulp, total.conditioned);
   for (const auto* offenders : {&total.missed_rays, &total.lost_rays, &total.phantom_rays, &total.wrong_side_rays,
                                 &total.limit_rays, &lines.odd_rays, &lines.lost_rays})
     print(*offenders);

@@ -38,18 +38,22 @@ Ray near_cells(const StressScene& scene, Ray ray) {
 // Nearer to a skeleton than this no surface is but at the point of a cone: only its place can be judged there.
 double point_size(const StressScene& scene) { return 5e-7 * scene.size(); }
 
+// Sums in float are known to this, whatever the tracer does.
+constexpr double field_rounding = 5e-7;
+
 double ulp_of_float(double t) {
   const auto f = static_cast<float>(t);
   return static_cast<double>(std::nextafter(f, std::numeric_limits<float>::infinity()) - f);
 }
 
-void judge_limits(const StressScene& scene, const Ray& ray, const SurfaceHit& hit, const char* family, Verdict& v) {
+void judge_limits(const StressScene& scene, const Ray& ray, const SurfaceHit& hit, double along, const char* family,
+                  Verdict& v) {
   const auto ending = [&](double t_max) {
     Ray r = ray;
     r.t_max = t_max;
     return r;
   };
-  const double slack = 4 * ulp_of_float(hit.t);
+  const double slack = 4 * ulp_of_float(hit.t) + 2 * field_rounding / along;
   const auto at = scene.surfaces().first_hit(ending(hit.t));
   const auto before = scene.surfaces().first_hit(ending(std::nextafter(hit.t, 0)));
   const bool holds = at && at->t == hit.t && !before && scene.surfaces().occluded(ending(hit.t + slack)) &&
@@ -84,10 +88,13 @@ void judge_hit(const StressScene& scene, const Ray& ray, const SurfaceHit& hit, 
   }
   const double along = dot(exact.corrected_gradient, ray.direction);
   if (!from_afar || !(along > 0.1 * slope)) return;
-  judge_limits(scene, ray, hit, family, v);
+  judge_limits(scene, ray, hit, along, family, v);
   ++v.measured;
-  const double ulps = std::fabs(1 - exact.corrected) / along / ulp_of_float(hit.t);
+  const double ulp = ulp_of_float(hit.t), ulps = std::fabs(1 - exact.corrected) / along / ulp;
   v.within_4_ulp += ulps <= 4;
+  const bool conditioned = field_rounding / along < 4 * ulp;
+  v.conditioned += conditioned;
+  v.conditioned_within_4_ulp += conditioned && ulps <= 4;
   v.largest_ulps = std::max(v.largest_ulps, ulps);
 }
 
@@ -134,6 +141,8 @@ void Verdict::add(const Verdict& b) {
   points += b.points;
   measured += b.measured;
   within_4_ulp += b.within_4_ulp;
+  conditioned += b.conditioned;
+  conditioned_within_4_ulp += b.conditioned_within_4_ulp;
   evaluations += b.evaluations;
   largest_displacement = std::max(largest_displacement, b.largest_displacement);
   largest_ulps = std::max(largest_ulps, b.largest_ulps);

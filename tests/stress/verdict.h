@@ -36,6 +36,8 @@ struct Verdict {
   /// Hits of camera rays that meet the surface at more than a grazing angle, and those of them whose t is within 4 ulp
   /// of float of the exact root's.
   std::uint64_t measured = 0, within_4_ulp = 0;
+  /// Those whose t the rounding of a sum in float moves by less than 4 ulp.
+  std::uint64_t conditioned = 0, conditioned_within_4_ulp = 0;
   std::uint64_t evaluations = 0;
   double largest_displacement = 0;  ///< over the distance to the skeleton, of hits that are not counted above
   double largest_ulps = 0;

@@ -90,7 +90,7 @@ inline void add_octant(const float* group, int groups, int exponent, const float
     a[4] += weight * tau;
     touching = larger(touching, share > 0.0F ? 1e-4F - nearest : V16{} - 1.0F);
     // Farther away than this a piece is no more than a hundredth of the field, and its own surface ends before.
-    const V16 thick = larger(tau, splat(1e-6F));
+    const V16 thick = larger(load(group + 192), splat(1e-9F));
     const V16 thinness_here = nearest < 4.0F * thick ? 1.0F / thick : V16{};
     thinness = larger(thinness, share > 0.0F ? thinness_here : V16{});
   }
