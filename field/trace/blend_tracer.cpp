@@ -59,7 +59,17 @@ double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent,
 
 }  // namespace
 
+namespace {
+
+std::uint64_t next_number() {
+  static std::atomic<std::uint64_t> last = 0;
+  return ++last;
+}
+
+}  // namespace
+
 struct BlendTracer::State {
+  const std::uint64_t number = next_number();  // no two tracers have the same
   BlendField field;
   Correction correction;
   IsoCurve iso;
@@ -190,13 +200,36 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, boo
   return best;
 }
 
+namespace {
+
+// Whether a ray begins inside, by the exact field: asked only when a block is entered inside. Rays of a camera share
+// their beginning.
+bool begins_inside(const BlendField& field, std::uint64_t field_number, const Ray& ray) {
+  struct Place {
+    std::uint64_t field_number = 0;
+    Vec3d at;
+    bool inside = false;
+  };
+  thread_local Place last;
+  const Vec3d at = ray.at(ray.t_min);
+  if (last.field_number != field_number || !(last.at == at)) last = {field_number, at, corrected_value(field, at) >= 1};
+  return last.inside;
+}
+
+}  // namespace
+
 std::optional<CellHit> BlendTracer::hit_in(const Block& b, const Ray& ray, bool any, double enter, double exit,
                                            CellLog& log) const {
   const RayInCube cube(ray, b.center(), b.half());
-  const Root root = state_->kernels.first_root(
-      b.view(), cube.local,
-      {.t0 = cube.to_local(enter), .t1 = cube.to_local(exit), .any = any, .from_surface = enter <= ray.t_min});
+  BlockKernels::Query query{
+      .t0 = cube.to_local(enter), .t1 = cube.to_local(exit), .any = any, .from_surface = enter <= ray.t_min};
+  Root root = state_->kernels.first_root(b.view(), cube.local, query);
   log.evaluations += static_cast<std::uint32_t>(root.evaluations);
+  if (root.enters_inside && begins_inside(state_->field, state_->number, ray)) {
+    query.leaving = true;
+    root = state_->kernels.first_root(b.view(), cube.local, query);
+    log.evaluations += static_cast<std::uint32_t>(root.evaluations);
+  }
   log.undecided = std::min(log.undecided, cube.to_world(root.undecided));
   if (!root.hit) return {};
   return CellHit{std::max(cube.to_world(root.t), ray.t_min), &b};

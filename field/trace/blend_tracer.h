@@ -69,7 +69,8 @@ class BlendTracer {
   std::size_t tile_count() const;
   Box3 tile_box(std::size_t tile) const;
 
-  /// The first root inside a tile with t in [ray.t_min, ray.t_max]; t does not depend on ray.t_max.
+  /// The first place inside a tile where the ray comes to the surface: from outside, or, for a ray that begins inside,
+  /// where it leaves. A ray that begins within rounding of the surface counts as outside. t in [ray.t_min, ray.t_max]; t does not depend on ray.t_max.
   /// With `any`, any root.
   std::optional<CellHit> first_hit(std::size_t tile, const Ray&, bool any, CellLog&) const;
   /// Normal and starting point at a hit in this tile.

@@ -51,20 +51,9 @@ Outcome run_scene(const Job& job, std::uint64_t number) {
   return out;
 }
 
-// What says that it is proved must be right. Two things are not held yet, and may not grow:
-// - A search ends undecided after 200 samples, and what lies behind in its stretch is lost; in rings the ray then goes
-// on
-//   inside, and its hit and the start of further rays lie there. That happens where the field stays within some 1e-3 of
-//   1 over a long way: in rings, in slits at contact, and beside threads at alpha < 0.
-// - The traced field of a thread of a thousandth of a limb's radius beside it is off by up to 1e-4, twice what counts
-// as
-//   a phantom; further rays may start inside there.
-bool is_held(std::size_t kind, const Verdict& v, const Parity& p) {
-  const bool thread = std::string(kind_names[kind]) == "thin feature", ring = std::string(kind_names[kind]) == "ring";
-  const std::uint64_t per_thousand = v.rays / 1000 + 1;
-  if (v.lost > per_thousand || p.odd_lost > p.lines / 500 + 1) return false;
-  if (thread || ring) return v.missed + v.phantom + v.wrong_side <= per_thousand && p.odd == 0;
-  return v.missed + v.phantom + v.wrong_side == 0 && p.odd == 0;
+bool is_held(const Verdict& v, const Parity& p) {
+  return v.missed + v.lost + v.phantom + v.wrong_side + v.limits == 0 && p.odd + p.odd_lost == 0 &&
+         v.conditioned_within_4_ulp == v.conditioned;
 }
 
 void print(const char* name, const Verdict& v) {
@@ -110,7 +99,7 @@ bool judged(const Outcome& all) {
                                 &total.limit_rays, &lines.odd_rays, &lines.lost_rays})
     print(*offenders);
   bool held = total.hits > total.rays / 10;
-  for (std::size_t k = 0; k < kind_names.size(); ++k) held &= is_held(k, all.kinds[k], all.kind_lines[k]);
+  for (std::size_t k = 0; k < kind_names.size(); ++k) held &= is_held(all.kinds[k], all.kind_lines[k]);
   return held;
 }
 

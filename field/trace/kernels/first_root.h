@@ -126,6 +126,7 @@ struct BlockSearch {
     if (found.hit && !(root.hit && root.t <= found.t)) {
       root.hit = true;
       root.t = found.t;
+      root.enters_inside = found.enters_inside;
     }
     return root.hit;
   }
@@ -188,18 +189,54 @@ bool search_octants(BlockSearch& search, const Octants& octants, float t0, float
   return search.root.hit;
 }
 
+// Nearer to 1 than this, neighbouring blocks may differ about the side.
+inline constexpr float clearly_inside = 2e-5F;
+
+// Where a ray leaves that is inside at t0.
+inline Root exit_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
+  Marcher march(block, block.fine(), ray, query.t0, query.t1);
+  march.exits = true;
+  Search search(march, query.t0, query.t1);
+  search.record(march.sample(query.t0));
+  Root root;
+  if (!search.missed()) root = decide(search, search.guess(), query.any);
+  root.evaluations = march.evaluations;
+  return root;
+}
+
+inline Root root_at_entry(const BlockKernels::Query& query, int evaluations) {
+  return {.t = query.t0, .hit = true, .evaluations = evaluations, .enters_inside = true};
+}
+
+// Whether a ray comes into the block inside. Asked only of what otherwise is a hit.
+inline bool enters_inside(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query, Root& root) {
+  if (!query.any && !root.enters_inside) return false;
+  Marcher rough(block, block.coarse, ray, query.t0, query.t1);
+  ++root.evaluations;
+  if (rough.sample(query.t0).residual > 0) return false;
+  Marcher march(block, block.fine(), ray, query.t0, query.t1);
+  ++root.evaluations;
+  return march.sample(query.t0).nominal < -clearly_inside;
+}
+
 Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
+  if (query.leaving) return exit_root(block, ray, query);
   BlockSearch search{.block = block, .ray = ray, .any = query.any, .root = {}};
   float front = query.t0;
   if (query.from_surface) {  // too near for polynomials; one fine certificate leads away
     Marcher march(block, block.fine(), ray, query.t0, query.t1);
     Search start(march, query.t0, query.t1);
-    start.record(march.sample(query.t0));
+    const Sample first = march.sample(query.t0);
+    if (first.nominal < -clearly_inside) return root_at_entry(query, march.evaluations);
+    start.record(first);
     search.root.evaluations = march.evaluations;
     if (start.missed()) return search.root;
     front = start.front;
   }
   search_octants(search, *block.octants, front, query.t1);
   search.settle(infinity);
+  if (search.root.hit && !query.from_surface && enters_inside(block, ray, query, search.root))
+    return root_at_entry(query, search.root.evaluations);
+  search.root.enters_inside = false;
   return search.root;
 }

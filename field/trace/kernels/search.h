@@ -128,7 +128,7 @@ struct Search {
     const float step = -last.scaled / last.scaled_slope, tolerance = shortest_gap * last.distance;
     root = max_of(front, last.t + step);
     if (!(step < 1.2e-3F * last.distance) || !(root - front < tolerance) || !(root <= end)) return false;
-    return (bracketed() && inside.t - root < tolerance) || march.inside_at(last, step + tolerance);
+    return (bracketed() && inside.t - root < tolerance) || march.crossed_at(last, step + tolerance);
   }
 
   // A gap too short to decide: with an inside sample behind it, it holds the root; else a grazing touch, left.
@@ -204,6 +204,7 @@ inline Root decide(Search& s, float guess, bool any) {
     if (!root.hit && s.too_short(p)) root.hit = s.give_up_gap(root.t);
     guess = s.next(p, before, samples);
   }
+  root.enters_inside = root.hit && !s.have_last;  // perhaps: nothing before it is known to be outside
   root.undecided = s.undecided_before(root.hit ? root.t : infinity);
   return root;
 }
