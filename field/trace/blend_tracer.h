@@ -29,8 +29,7 @@ struct TraceOptions {
   /// it; TraceStatistics::largest_error tells what is certified.
   double tolerance = 1e-5;
   /// Polynomials find where surface can be, unless there are so many pieces that few rays come to each. Off: in 10^6
-  /// rays of the stress set they once passed a surface 1.9e-4 deep without saying so (tests/stress, scene 47,
-  /// silhouette).
+  /// rays of the stress set they once passed a surface 1.9e-4 deep without saying so (at a silhouette).
   bool polynomials = false;
 };
 
@@ -70,8 +69,8 @@ class BlendTracer {
   Box3 tile_box(std::size_t tile) const;
 
   /// The first place inside a tile where the ray comes to the surface: from outside, or, for a ray that begins inside,
-  /// where it leaves. A ray that begins within rounding of the surface counts as outside. t in [ray.t_min, ray.t_max]; t does not depend on ray.t_max.
-  /// With `any`, any root.
+  /// where it leaves. A ray that begins within rounding of the surface counts as outside. t in [ray.t_min, ray.t_max];
+  /// t does not depend on ray.t_max. With `any`, any root.
   std::optional<CellHit> first_hit(std::size_t tile, const Ray&, bool any, CellLog&) const;
   /// Normal and starting point at a hit in this tile.
   SurfacePoint surface_at(std::size_t tile, const Vec3d& position) const;
