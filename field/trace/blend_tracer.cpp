@@ -7,7 +7,6 @@
 #include "field/trace/block.h"
 #include "field/trace/cell_tree.h"
 #include "field/trace/precision.h"
-#include "field/trace/tile_boxes.h"
 
 namespace marrow {
 namespace {
@@ -56,7 +55,6 @@ struct BlendTracer::State {
   SourceTree sources;
   const BlockKernels& kernels;
   NearFar coarse, fine;
-  LatticeError lattice[2];  // of curves, and of points
   mutable BlockArena arena;
   CellTree tree;
   Block::Context context;
@@ -70,19 +68,8 @@ struct BlendTracer::State {
         kernels(k),
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
         fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
-        lattice{lattice_error(field.degree), lattice_error(field.degree - 1)},
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
-        context{sources.pieces(),
-                tree,
-                cutter,
-                coarse,
-                fine,
-                lattice,
-                iso,
-                kernels,
-                field.degree,
-                arena,
-                options.polynomials && polynomials_pay(sources.pieces().size())} {}
+        context{sources.pieces(), tree, cutter, coarse, fine, iso, kernels, field.degree, arena} {}
 };
 
 Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const TraceOptions& options) {
@@ -142,41 +129,27 @@ std::optional<CellHit> BlendTracer::first_hit(std::size_t tile, const Ray& ray, 
   return hit && hit->t <= ray.t_max ? hit : std::nullopt;
 }
 
-// Boxes in the ray's order. They overlap by roundings, so that one that begins before a hit may hold a nearer one.
+// The slots of an octant that is one cell follow each other along the ray: they count as one.
 std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, bool any, double enter, double exit,
                                            CellLog& log) const {
-  const TileBoxes& boxes = tile.boxes();
   const TileContent& content = tile.content();
   const RayInCube cube(ray, tile.place().center, tile.place().half);
-  std::optional<CellHit> best;
-  const auto visit = [&](int slot, float begin, float end) {
-    const double from = std::max(enter, cube.to_world(begin)), to = std::min(exit, cube.to_world(end));
+  Walk walk;
+  state_->kernels.walk(content.occupied(), cube.local, cube.to_local(enter), cube.to_local(exit), walk);
+  const auto holder = [&](int i) {
+    const int octant = path_of(walk.slot[i]).outer;
+    return content.large_cells >> octant & 1 ? slot_at({octant, 0}) : walk.slot[i];
+  };
+  for (int i = 0; i < walk.count; ++i) {
+    const int slot = holder(i);
+    const double from = std::max(enter, cube.to_world(walk.begin[i]));
+    while (i + 1 < walk.count && holder(i + 1) == slot) ++i;
+    const double to = std::min(exit, cube.to_world(walk.end[i]));
     const auto hit = content.cells >> slot & 1 ? hit_in(block(tile, slot), ray, any, from, to, log)
                                                : hit_in(state_->tree.child(tile, slot), ray, any, from, to, log);
-    if (hit && (!best || hit->t < best->t)) best = hit;
-  };
-  const auto behind = [&](float begin) { return best && (any || cube.to_world(begin) > best->t); };
-  // A tight box is worth a block only where many rays come.
-  const auto cell_box = [&](int slot) {
-    return state_->context.polynomials ? block(tile, slot).box() : CellTree::cell(tile, slot).box();
-  };
-  Stretches outer, inner;
-  state_->kernels.stretches(boxes.octants(), cube.local, cube.to_local(enter), cube.to_local(exit), outer);
-  for (int i = 0; i < outer.count; ++i) {
-    const int octant = outer.order[i];
-    if (behind(outer.begin[octant])) break;
-    if (content.large_cells >> octant & 1) {
-      visit(slot_at({octant, 0}), outer.begin[octant], outer.end[octant]);
-      continue;
-    }
-    state_->kernels.stretches(boxes.slots(octant, cell_box), cube.local, outer.begin[octant], outer.end[octant], inner);
-    for (int k = 0; k < inner.count; ++k) {
-      const int slot = inner.order[k];
-      if (behind(inner.begin[slot])) break;
-      visit(slot_at({octant, slot}), inner.begin[slot], inner.end[slot]);
-    }
+    if (hit) return hit;
   }
-  return best;
+  return {};
 }
 
 std::optional<CellHit> BlendTracer::hit_in(const Block& b, const Ray& ray, bool any, double enter, double exit,

@@ -28,10 +28,6 @@ struct TraceOptions {
   /// Aim for the displacement of the traced surface from the exact one, over the local radius. Error budgets come from
   /// it; TraceStatistics::largest_error tells what is certified.
   double tolerance = 1e-5;
-  /// Polynomials find where surface can be, unless there are so many pieces that few rays come to each. Off: in 10^6
-  /// rays of the stress set they once passed a surface 1.9e-4 deep without saying so (tests/stress, scene 47,
-  /// silhouette).
-  bool polynomials = false;
 };
 
 struct CellHit {

@@ -1,7 +1,9 @@
-// What tracing needs of one cell: near sources, the far field, and polynomials that tell where surface can be.
+// What tracing needs of one cell: near sources, the far field, and where in it surface can be.
 #pragma once
 
-#include <optional>
+#include <array>
+#include <atomic>
+#include <cstdint>
 #include <span>
 
 #include "field/math/box3.h"
@@ -9,7 +11,6 @@
 #include "field/trace/block_kernels.h"
 #include "field/trace/cell_tree.h"
 #include "field/trace/lazy.h"
-#include "field/trace/patches.h"
 
 namespace marrow {
 
@@ -21,14 +22,12 @@ class Block {
     std::span<const Piece> pieces;  ///< in the order of the source tree
     const CellTree& tree;
     const PieceCutter& cutter;
-    const NearFar& coarse;             ///< errors of the sources that polynomials are made from
-    const NearFar& fine;               ///< errors of the fine level
-    const LatticeError (&lattice)[2];  ///< of curves, and of points
+    const NearFar& coarse;  ///< errors of the coarse level
+    const NearFar& fine;    ///< errors of the fine level
     const IsoCurve& iso;
     const BlockKernels& kernels;
     int degree;
     BlockArena& arena;  ///< holds what blocks are made of
-    bool polynomials;   ///< see PatchSource
   };
   /// The context must outlive the block.
   Block(const Context&, const CellTree::Cell&);
@@ -38,8 +37,6 @@ class Block {
   const BlockView& view() const { return view_; }
   const Vec3d& center() const { return cell_.center; }
   double half() const { return cell_.half; }
-  /// Around all surface in the cell; empty when there is none.
-  const Box3& box() const { return box_; }
 
   /// What is rendered, and certified bounds of its difference from the exact field, over the cell.
   struct Fine {
@@ -52,12 +49,11 @@ class Block {
  private:
   const Context& context_;
   CellTree::Cell cell_;
-  Box3 box_;
-  FieldLevel coarse_;
-  PatchSource source_;
-  std::optional<OctantPatches> octants_;
   BlockView view_;
   Lazy<Fine> fine_;
+  std::uint64_t surface(int octant) const;
+  mutable std::array<std::atomic<std::uint64_t>, 8> surface_{};
+  mutable std::atomic<std::uint8_t> surface_known_ = 0;  // a bit for each octant
 };
 
 }  // namespace marrow

@@ -3,15 +3,21 @@
 #include <utility>
 
 #include "field/trace/block.h"
-#include "field/trace/tile_boxes.h"
 
 namespace marrow {
+
+std::uint64_t TileContent::occupied() const {
+  std::uint64_t slots = cells | tiles;
+  for (int octant = 0; octant < 8; ++octant)
+    if (large_cells >> octant & 1)
+      for (int inner = 0; inner < 8; ++inner) slots |= std::uint64_t{1} << slot_at({octant, inner});
+  return slots;
+}
 
 Tile::Tile(const TilePlace& place, Surroundings coarse, const TileContent& content)
     : place_(place),
       content_(content),
       coarse_(std::move(coarse)),
-      boxes_(std::make_unique<const TileBoxes>(place_, content_)),
       blocks_(new Lazy<Block>[static_cast<std::size_t>(std::popcount(content.cells))]),
       children_(new Lazy<Tile>[static_cast<std::size_t>(std::popcount(content.tiles))]) {}
 

@@ -13,7 +13,6 @@
 namespace marrow {
 
 class Block;
-class TileBoxes;
 
 /// Where a tile is and what it belongs to.
 struct TilePlace {
@@ -34,6 +33,9 @@ struct TilePlace {
 struct TileContent {
   std::uint64_t cells = 0, tiles = 0;  ///< a bit for each slot
   std::uint8_t large_cells = 0;        ///< a bit for each octant that is one cell
+
+  /// All slots that hold something.
+  std::uint64_t occupied() const;
 };
 
 /// Blocks of cells and smaller tiles are made when asked for.
@@ -50,8 +52,6 @@ class Tile {
   const Lazy<Surroundings>& fine_of_octant(int octant) const { return octants_[static_cast<std::size_t>(octant)]; }
   /// Of a slot that has one.
   const Lazy<Block>& block(int slot) const { return blocks_[rank(content_.cells, slot)]; }
-  /// Where in it surface can be.
-  const TileBoxes& boxes() const { return *boxes_; }
   const Lazy<Tile>& child(int slot) const { return children_[rank(content_.tiles, slot)]; }
   /// Of this tile itself, without its blocks and smaller tiles.
   std::size_t bytes() const;
@@ -65,7 +65,6 @@ class Tile {
   TileContent content_;
   Surroundings coarse_;
   Lazy<Surroundings> fine_;
-  std::unique_ptr<const TileBoxes> boxes_;
   std::array<Lazy<Surroundings>, 8> octants_;
   std::unique_ptr<Lazy<Block>[]> blocks_;
   std::unique_ptr<Lazy<Tile>[]> children_;

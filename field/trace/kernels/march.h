@@ -13,9 +13,7 @@ struct Sample {
                    // field is surely below 1, and some step from here can be certified
   float nominal;   // V(u) - v of the field as summed
   float slope;     // derivative of the residual along the ray
-  // (v / V)^(-1/(n-1)) - 1 of the field as summed, and its derivative: 0 on the surface and, near a single skeleton,
-  // linear in the distance from it, so that Newton's method on it jumps well [Aydinlilar and Zanni 2021].
-  float scaled, scaled_slope;
+  float v, v_slope, curve;   // v, its derivative along the ray, and V(u) of the field as summed
   float x_weight, y_weight;  // -d residual / dx, dy
 };
 
@@ -26,8 +24,7 @@ struct Marcher {
   FarOnRay far;
   int evaluations = 0;
 
-  Marcher(const BlockView& b, const FieldLevel& l, const LocalRay& r, float t0, float t1)
-      : block(b), level(l), ray(r), far(l, r, t0, t1, 0.25F) {}
+  Marcher(const BlockView& b, const FieldLevel& l, const LocalRay& r) : block(b), level(l), ray(r), far{l, r} {}
 
   Sample sample(float t) {
     ++evaluations;
@@ -54,7 +51,9 @@ struct Marcher {
     p.x_weight = iso.sin_theta + curve.slope * iso.cos_theta;
     p.y_weight = iso.cos_theta - curve.slope * iso.sin_theta;
     p.slope = -p.x_weight * p.s.df - p.y_weight * dy;
-    set_scaled(p, v, turned_v(iso, p.s.df, dy), curve.value);
+    p.v = v;
+    p.v_slope = turned_v(iso, p.s.df, dy);
+    p.curve = curve.value;
     p.s.f += level.f_error;
     p.y = y + level.g_error;
     p.residual = margin_at(iso, p.s.f * (1 + rounding), p.y * (1 + rounding));
@@ -62,12 +61,17 @@ struct Marcher {
     return p;
   }
 
-  void set_scaled(Sample& p, float v, float dv, float curve) const {
-    const float inverse = 1 / max_of(curve, 1e-6F), q = max_of(v * inverse, 1e-6F);
-    const float dq = (dv - q * (p.slope + dv)) * inverse;  // (v / V)' with V' = residual' + v'
+  // (v / V)^(-1/(n-1)) - 1 of the field as summed, and its derivative: 0 on the surface and, near a single skeleton,
+  // linear in the distance from it, so that Newton's method on it jumps well [Aydinlilar and Zanni 2021].
+  struct Scaled {
+    float value, slope;
+    float newton_step() const { return -value / slope; }
+  };
+  Scaled scaled(const Sample& p) const {
+    const float inverse = 1 / max_of(p.curve, 1e-6F), q = max_of(p.v * inverse, 1e-6F);
+    const float dq = (p.v_slope - q * (p.slope + p.v_slope)) * inverse;  // (v / V)' with V' = residual' + v'
     const float root = inverse_root(q, block.degree - 1);
-    p.scaled = root - 1;
-    p.scaled_slope = -root * dq / (q * static_cast<float>(block.degree - 1));
+    return {root - 1, -root * dq / (q * static_cast<float>(block.degree - 1))};
   }
 
   // sum_{j=1..m} (m+1-j) a^j for m = degree (field) and degree + 1 (gradient): psi_1^m(q) / q^2 with a = 1/(1-q),
@@ -94,14 +98,14 @@ struct Marcher {
     const float q = abs_of(h) / p.distance;
     if (!(q < 0.9F)) return false;
     const Series series = series_of(1 / (1 - q));
-    const float hh = h * h, bend = (p.s.second * series.field + far.f_curvature) * hh;
+    const float hh = h * h, bend = (p.s.second * series.field + level.far_bend) * hh;
     const float x_end = p.s.f + p.s.df * h + bend;
     float length2 = 0;
     for (int i = 0; i < 3; ++i) {
       const float end = p.s.g[i] + p.s.dg[i] * h;
       length2 += end * end;
     }
-    const float y_end = root_of(length2) + (p.s.third * series.gradient + far.g_curvature) * hh + level.g_error;
+    const float y_end = root_of(length2) + (p.s.third * series.gradient + level.far_g_bend) * hh + level.g_error;
     const float x_up = max_of(p.s.f, x_end) * (1 + rounding), y_up = max_of(p.y, y_end) * (1 + rounding);
     if (!(margin_at(block.iso, x_up, y_up) > 0)) return false;
     if (!block.iso.two_sided) return true;
@@ -120,8 +124,8 @@ struct Marcher {
       const float end = p.s.g[i] + p.s.dg[i] * h;
       length2 += end * end;
     }
-    const float x = p.s.f - 2 * level.f_error + p.s.df * h - (p.s.second * series.field + far.f_curvature) * hh;
-    const float y = root_of(length2) - (p.s.third * series.gradient + far.g_curvature) * hh - level.g_error;
+    const float x = p.s.f - 2 * level.f_error + p.s.df * h - (p.s.second * series.field + level.far_bend) * hh;
+    const float y = root_of(length2) - (p.s.third * series.gradient + level.far_g_bend) * hh - level.g_error;
     if (!(x > 0) || !(y > 0)) return false;
     return curve_at(block.iso, turned_u(block.iso, x, y)).value < turned_v(block.iso, x, y);
   }
@@ -132,8 +136,8 @@ struct Marcher {
     const float most = min_of(limit, 0.85F * p.distance);
     // Margin along the step, to second order: residual - b h - c h^2.
     const float m = static_cast<float>(block.degree);
-    const float c = p.x_weight * (p.s.second * m * (m + 1) * 0.5F + far.f_curvature) +
-                    p.y_weight * (p.s.third * (m + 1) * (m + 2) * 0.5F + far.g_curvature);
+    const float c = p.x_weight * (p.s.second * m * (m + 1) * 0.5F + level.far_bend) +
+                    p.y_weight * (p.s.third * (m + 1) * (m + 2) * 0.5F + level.far_g_bend);
     const float b = -sign * p.slope;
     const float model = 2 * p.residual / (b + root_of(max_of(0, b * b + 4 * max_of(c, 0) * p.residual)) + 1e-20F);
     if (model > 0.8F * most && outside_until(p, sign * most)) return most;

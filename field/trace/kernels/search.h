@@ -57,18 +57,20 @@ struct Search {
   // Where the field as summed, without the level's errors, reaches 1: by the samples at the two ends of the first gap.
   // NaN-free; may lie outside the gap.
   float estimated_root() const {
-    const bool from_last = have_last && last.scaled_slope < 0;
-    const bool from_inside = bracketed() && inside.scaled_slope < 0;
-    if (from_last && from_inside) return hermite_root();
-    if (from_last) return last.t - last.scaled / last.scaled_slope;
-    if (from_inside) return inside.t - inside.scaled / inside.scaled_slope;
+    Marcher::Scaled before{}, behind{};
+    if (have_last) before = march.scaled(last);
+    if (bracketed()) behind = march.scaled(inside);
+    const bool from_last = before.slope < 0, from_inside = behind.slope < 0;
+    if (from_last && from_inside) return hermite_root(before, behind);
+    if (from_last) return last.t + before.newton_step();
+    if (from_inside) return inside.t + behind.newton_step();
     return infinity;
   }
 
   // The root of the cubic that meets the scaled values and slopes of both samples.
-  float hermite_root() const {
-    const float h = inside.t - last.t, p0 = last.scaled, p1 = inside.scaled;
-    const float d0 = last.scaled_slope * h, d1 = inside.scaled_slope * h;
+  float hermite_root(const Marcher::Scaled& before, const Marcher::Scaled& behind) const {
+    const float h = inside.t - last.t, p0 = before.value, p1 = behind.value;
+    const float d0 = before.slope * h, d1 = behind.slope * h;
     float u = p0 / max_of(p0 - p1, 1e-20F);
     for (int k = 0; k < 3; ++k) {
       const float u2 = u * u, u3 = u2 * u;
@@ -99,9 +101,10 @@ struct Search {
   bool pinned(float& root) const {
     if (!have_last || !(last.slope < 0)) return false;
     const float step = -last.residual / last.slope, tolerance = shortest_gap * last.distance;
-    const float scaled_step = -last.scaled / last.scaled_slope;
+    if (!(step < 1.2e-3F * last.distance)) return false;
+    const float scaled_step = march.scaled(last).newton_step();
     root = last.t + (abs_of(scaled_step - step) < 0.1F * step + tolerance ? scaled_step : step);
-    if (!(step < 1.2e-3F * last.distance) || !(root - front < tolerance) || !(root <= end)) return false;
+    if (!(root - front < tolerance) || !(root <= end)) return false;
     return (bracketed() && inside.t - root < tolerance) || march.inside_at(last, step + tolerance);
   }
 
