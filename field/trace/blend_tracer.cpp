@@ -29,20 +29,31 @@ std::pair<double, double> clip(const Box3& box, const Ray& ray, const Vec3d& inv
 
 Vec3d vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
-// How far to go along the normal until the field is certainly below 1, by more than rounding and neighbouring blocks
-// can differ: f and |G| there are bounded by their Taylor polynomials and the remainders B3 and B4 of tracing.md, with
-// series sums up to twice their values at 0 (a step of at most a tenth of the distance). Block coordinates.
-double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent, const IsoCurve& iso, int degree) {
-  constexpr double enough = 2e-5;
+// How far to go along the normal until the field is certainly below 1: f and |G| there are bounded by their Taylor
+// polynomials and the remainders B3 and B4 of tracing.md, with series sums up to twice their values at 0 (a step of at
+// most a tenth of the distance). Twice the errors of the block, since a ray may start in its neighbour. Where no step
+// is proved, beside a touch of the surface with itself, the one that comes nearest to it. Block coordinates.
+double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent, const Block::Fine& fine,
+                    const IsoCurve& iso, int degree) {
   const double slope = dot(vec(f.gradient), normal), n = degree;
-  double step = 1e-5 * f.nearest;
-  for (; step < 0.1 * f.nearest; step *= 2) {
-    const double x = f.f + slope * step + f.second * n * (n + 1) * step * step;
-    const double y = length(vec(f.si_gradient) + bent * step) + f.third * (n + 1) * (n + 2) * step * step;
-    const double x_low = f.f + slope * step - f.second * n * (n + 1) * step * step;
-    if (iso.margin(x, y) > enough && (!iso.two_sided() || iso.margin(x_low, y) > enough)) return step;
+  // As march.h: sums of floats, and positions in float.
+  const double raise = 1 + 2 * (4e-6 + 2e-7 * (n + 1) / f.nearest);
+  constexpr double enough = 2e-5;  // so that rays get away from where rounding leaves doubts
+  double best = 0, largest = -std::numeric_limits<double>::infinity();
+  for (double step = 2e-6 * f.nearest; step < 0.1 * f.nearest; step *= 2) {
+    const double bend = f.second * n * (n + 1) * step * step;
+    const double x = f.f + slope * step + bend + 2 * fine.f_error, x_low = f.f + slope * step - bend - 2 * fine.f_error;
+    const double y =
+        length(vec(f.si_gradient) + bent * step) + f.third * (n + 1) * (n + 2) * step * step + 2 * fine.gradient_error;
+    double margin = iso.margin(x * raise, y * raise);
+    if (iso.two_sided()) margin = std::min(margin, iso.margin(std::max(0.0, x_low / raise), y * raise));
+    if (margin > enough) return step;
+    if (margin > largest) {
+      largest = margin;
+      best = step;
+    }
   }
-  return 1e-4 * f.nearest;  // not proved: beside a touch of the surface with itself
+  return best;
 }
 
 }  // namespace
@@ -183,7 +194,7 @@ SurfacePoint BlendTracer::surface_at(const Block& b, const Vec3d& position) cons
   const IsoCurve::Slope c = state_->iso.gradient(f.f, y);
   SurfacePoint out;
   out.normal = normalize(-(gradient * c.x + bend(g) * (c.y / std::max(y, 1e-12))));
-  out.outside = position + out.normal * (b.half() * step_outside(f, out.normal, bend(out.normal), state_->iso,
+  out.outside = position + out.normal * (b.half() * step_outside(f, out.normal, bend(out.normal), b.fine(), state_->iso,
                                                                  state_->field.degree));
   return out;
 }

@@ -71,10 +71,10 @@ struct PointField {
 
 inline constexpr int far_moment_count = 80;  ///< see FarMoments
 
-inline constexpr int floats_per_piece_group = 12 * lanes;
+inline constexpr int floats_per_piece_group = 13 * lanes;
 ///< from xyz, along xyz, 1 / length^2 (0 for a point), share = mass / tau^m, radius at the end less that at `from`,
-///< tau (the larger), length, reach. Sources are within `reach` of the segment, within `length` of its nearest point.
-///< Unused lanes have share 0.
+///< tau (the larger), length, reach, least radius of a group's pieces. Sources are within `reach` of the segment,
+///< within `length` of its nearest point. Unused lanes have share 0.
 
 /// Bounds over the ball around one octant of a cube, in the cube's coordinates.
 struct OctantBounds {
@@ -82,6 +82,7 @@ struct OctantBounds {
   float f_low = 0;
   float weight = 0, weighted_radius = 0;  ///< fields of the pieces at the centre, and the same times their radii
   bool touches = false;                   ///< a piece comes into the ball
+  float thinness = 0;                     ///< 1 / radius of the thinnest piece within four of its radii of the ball
 };
 
 /// Of a field over a cube.

@@ -93,6 +93,7 @@ IsoCurve::IsoCurve(const Correction& correction, double alpha)
 
   std::vector<double> value(entry_count), below(entry_count, 0), above(entry_count, 0);
   for (int i = 0; i < entry_count; ++i) value[static_cast<std::size_t>(i)] = curve(u_begin_ + i * step_);
+  peak_x_ = -(u_begin_ + step_ * static_cast<double>(std::max_element(value.begin(), value.end()) - value.begin()));
   // Between entries the straight line is off by at most twice what three probes find: the error of linear
   // interpolation is a smooth arch over a step, and where the curve has a kink the probes stand within a
   // quarter of a step of it.
@@ -137,7 +138,8 @@ IsoCurve::View IsoCurve::view() const {
           .inverse_step = static_cast<float>(1 / step_),
           .sin_theta = static_cast<float>(sin_),
           .cos_theta = static_cast<float>(cos_),
-          .two_sided = two_sided_};
+          .two_sided = two_sided_,
+          .peak_x = static_cast<float>(peak_x_)};
 }
 
 double IsoCurve::lower(double u) const {

@@ -30,6 +30,7 @@ class IsoCurve {
     float u_begin, inverse_step;
     float sin_theta, cos_theta;
     bool two_sided;  ///< alpha < 0: "outside" must be tested at both ends of the interval of x
+    float peak_x;    ///< alpha < 0: where the curve over x is highest
   };
   View view() const;
 
@@ -55,7 +56,7 @@ class IsoCurve {
   double upper(double u) const;
 
   double critical_;
-  double sin_ = 0, cos_ = 1, u_begin_ = 0, step_ = 1;
+  double sin_ = 0, cos_ = 1, u_begin_ = 0, step_ = 1, peak_x_ = 0;
   bool two_sided_;
   std::vector<float> value_, lower_, upper_, slope_;
 };

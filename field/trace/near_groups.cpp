@@ -55,6 +55,7 @@ void NearGroups::add(const Piece& p) {
   g.taper[lane] = static_cast<float>((p.radius_to - p.radius_from) * scale_);
   g.tau[lane] = static_cast<float>(p.radius * scale_);
   g.length[lane] = static_cast<float>(p.length * scale_);
+  g.thinnest[lane] = g.tau[lane];
 }
 
 void NearGroups::add(const SourceNode& n) {
@@ -65,6 +66,7 @@ void NearGroups::add(const SourceNode& n) {
   g.share[lane] = static_cast<float>(n.mass / integer_power(tau, n.exponent));
   g.tau[lane] = static_cast<float>(tau * scale_);
   g.length[lane] = g.reach[lane] = static_cast<float>(n.radius * scale_);
+  g.thinnest[lane] = static_cast<float>(n.thinnest * scale_);
 }
 
 }  // namespace marrow

@@ -25,7 +25,7 @@ class NearGroups {
  private:
   struct alignas(64) Group {
     float from[3][lanes], along[3][lanes], inverse_length2[lanes], share[lanes], taper[lanes], tau[lanes],
-        length[lanes], reach[lanes];
+        length[lanes], reach[lanes], thinnest[lanes];
   };
   static_assert(sizeof(Group) == floats_per_piece_group * sizeof(float));
 

@@ -72,7 +72,7 @@ std::vector<Piece> PieceCutter::cut(const BlendField& blend) const {
     while (done < 1) {
       const double at = reversed ? 1 - done : done;
       const double radius = s.radius_from + (s.radius_to - s.radius_from) * at;
-      const double left = 1 - done, step_length = std::max(radius, 1e-3 * whole.radius);
+      const double left = 1 - done, step_length = std::max(radius, 1e-5 * whole.radius);
       const double count = std::ceil(left * whole.length / step_length - 1e-9);
       const double step = count <= 1 ? left : left / count;
       const double next = count <= 1 ? 1 : done + step;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <tbb/parallel_for.h>
@@ -117,8 +118,10 @@ class Grower {
       sums.add(pieces_[items_[i].piece]);
     }
     sums.write(node);
+    node.thinnest = std::numeric_limits<double>::infinity();
     for (std::size_t i = node.begin; i < node.end; ++i) {
       const Piece& p = pieces_[items_[i].piece];
+      node.thinnest = std::min(node.thinnest, p.radius);
       node.radius = std::max({node.radius, length(p.from - node.center), length(p.to - node.center)});
     }
     return box;
@@ -148,6 +151,7 @@ class Grower {
   }
 
   void join(SourceNode& node, const SourceNode& a, const SourceNode& b) const {
+    node.thinnest = std::min(a.thinnest, b.thinnest);
     NodeSums sums(a.center, degree_);
     sums.add(a);
     sums.add(b);

@@ -13,6 +13,7 @@ namespace marrow {
 /// point; they are exact, because Gauss-Legendre rules are for polynomials.
 struct SourceNode {
   Vec3d center;                         ///< sum w q / sum w
+  double thinnest = 0;                  ///< least radius of its pieces, each taken at its thicker end
   double radius = 0;                    ///< all of its pieces lie in this ball around the centre
   double mass = 0;                      ///< sum w
   double spread = 0;                    ///< sum w |q - center|^2

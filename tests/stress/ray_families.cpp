@@ -34,6 +34,17 @@ Vec3d joint_of(Random& random, const BlendField& blend) {
   return random.between(0, 1) < 0.5 ? s.from : s.to;
 }
 
+// Along a segment, exactly in its axis, or through it across, or through a point along an axis.
+Ray in_skeleton(Random& random, const StressScene& scene) {
+  const auto& segments = scene.blend().segments.skeletons;
+  if (segments.empty()) return through(joint_of(random, scene.blend()), axis(random), scene);
+  const auto i = static_cast<std::size_t>(random.whole(0, static_cast<int>(segments.size()) - 1));
+  const UnitVec3 along = normalize(segments[i].to - segments[i].from);
+  if (random.between(0, 1) < 0.6) return through(segments[i].from, random.between(0, 1) < 0.5 ? along : -along, scene);
+  const Vec3d at = lerp(segments[i].from, segments[i].to, random.between(0, 1));
+  return through(at, normalize(cross(along.vec(), random_direction(random))), scene);
+}
+
 // Past a skeleton at about its radius.
 Ray tangent(Random& random, const StressScene& scene) {
   const BlendField& blend = scene.blend();
@@ -105,6 +116,24 @@ Ray spawned(Random& random, const StressScene& s) {
   return {hit->outside, normalize(direction)};
 }
 
+// Beginning as nearly on the exact surface as a double can tell, on either side of it, at about a right angle or in the
+// tangent plane.
+Ray on_surface(Random& random, const StressScene& s) {
+  const Ray ray = random.between(0, 1) < 0.5 ? chord(random, s) : focus(random, s);
+  const auto hit = s.surfaces().first_hit(ray);
+  if (!hit) return chord(random, s);
+  Vec3d p = hit->position;
+  for (int i = 0; i < 3; ++i) {
+    const BlendSample here = evaluate(s.blend(), p);
+    p = p - here.corrected_gradient * ((here.corrected - 1) / length_squared(here.corrected_gradient));
+  }
+  if (!(length(p - hit->position) < 1e-3 * s.size())) p = hit->position;
+  const Vec3d normal = hit->normal.vec(), direction = random_direction(random);
+  const bool tangential = random.between(0, 1) < 0.5;
+  const Vec3d flat = direction - normal * dot(direction, normal);
+  return {p, normalize(tangential ? flat : direction)};
+}
+
 }  // namespace
 
 Ray ray_of(Family family, Random& random, const StressScene& scene) {
@@ -117,6 +146,8 @@ Ray ray_of(Family family, Random& random, const StressScene& scene) {
           axis(random), scene);
     case Family::Joint:
       return toward(eye(random, scene), joint_of(random, scene.blend()));
+    case Family::Skeleton:
+      return in_skeleton(random, scene);
     case Family::Tangent:
       return tangent(random, scene);
     case Family::CellBoundary:
@@ -127,6 +158,8 @@ Ray ray_of(Family family, Random& random, const StressScene& scene) {
       return far(random, scene);
     case Family::Silhouette:
       return silhouette(random, scene);
+    case Family::Surface:
+      return on_surface(random, scene);
     case Family::Spawned:
       return spawned(random, scene);
   }

@@ -8,13 +8,16 @@
 
 namespace marrow::test {
 
-enum class Family { Chord, Axis, Joint, Tangent, CellBoundary, Focus, Far, Silhouette, Spawned };
-inline constexpr std::array family_names{"chord",         "axis-parallel", "joint",      "tangent", "cell boundary",
-                                         "hardest place", "far camera",    "silhouette", "spawned"};
+enum class Family { Chord, Axis, Joint, Skeleton, Tangent, CellBoundary, Focus, Far, Silhouette, Surface, Spawned };
+inline constexpr std::array family_names{"chord",      "axis-parallel",  "joint",         "in a skeleton",
+                                         "tangent",    "cell boundary",  "hardest place", "far camera",
+                                         "silhouette", "on the surface", "spawned"};
 inline constexpr std::size_t family_count = family_names.size();
+/// Families from here on start on a surface: a line has no such start.
+inline constexpr std::size_t line_family_count = family_count - 2;
 
-/// A ray of the family. Silhouette and Spawned ask the scene for surfaces first; where there are none they give a
-/// chord.
+/// A ray of the family. Silhouette, Surface and Spawned ask the scene for surfaces first; where there are none they
+/// give a chord.
 Ray ray_of(Family, Random&, const StressScene&);
 
 }  // namespace marrow::test

@@ -39,12 +39,12 @@ Outcome run_scene(const Job& job, std::uint64_t number) {
   const std::uint64_t rays = job.rays / job.scenes, lines = job.lines / job.scenes;
   for (std::uint64_t i = 0; i < rays; ++i) {
     const std::size_t f = i % family_count;
-    judge(scene, ray_of(static_cast<Family>(f), random, scene), family_names[f],
-          static_cast<Family>(f) != Family::Spawned, out.families[f]);
+    judge(scene, ray_of(static_cast<Family>(f), random, scene), family_names[f], f < line_family_count,
+          out.families[f]);
   }
   for (const Verdict& v : out.families) out.kinds[scene.kind()].add(v);
   for (std::uint64_t i = 0; i < lines; ++i) {
-    const std::size_t f = i % (family_count - 1);  // spawned rays start on a surface: no lines
+    const std::size_t f = i % line_family_count;
     count_crossings(scene, ray_of(static_cast<Family>(f), random, scene), random, family_names[f], out.lines[f]);
   }
   for (const Parity& p : out.lines) out.kind_lines[scene.kind()].add(p);
@@ -69,9 +69,10 @@ bool is_held(std::size_t kind, const Verdict& v, const Parity& p) {
 
 void print(const char* name, const Verdict& v) {
   fmt::print(
-      "{:<16}{:>10} rays{:>10} hits: missed {}, lost {}, phantom {}, wrong side {}; displaced {}, grazing {}, not "
+      "{:<16}{:>10} rays{:>10} hits: missed {}, lost {}, phantom {}, wrong side {}, limits {}; displaced {}, grazing "
+      "{}, not "
       "certified {}\n",
-      name, v.rays, v.hits, v.missed, v.lost, v.phantom, v.wrong_side, v.displaced, v.grazing, v.uncertified);
+      name, v.rays, v.hits, v.missed, v.lost, v.phantom, v.wrong_side, v.limits, v.displaced, v.grazing, v.uncertified);
 }
 
 void print(const char* name, const Parity& p) {
@@ -92,7 +93,7 @@ bool judged(const Outcome& all) {
   }
   print("all", total);
   for (std::size_t k = 0; k < kind_names.size(); ++k) print(kind_names[k], all.kinds[k]);
-  for (std::size_t f = 0; f + 1 < family_count; ++f) {
+  for (std::size_t f = 0; f < line_family_count; ++f) {
     print(family_names[f], all.lines[f]);
     lines.add(all.lines[f]);
   }
@@ -100,10 +101,13 @@ bool judged(const Outcome& all) {
   const auto share = [](std::uint64_t a, std::uint64_t b) { return b == 0 ? 0 : 100 * double(a) / double(b); };
   fmt::print(
       "hits are off the exact surface by at most {:.3g} of the distance to the skeleton\n"
-      "t within 4 ulp of float: {:.4f} % of {} hits at no grazing angle, {:.3g} ulp at most\n",
-      total.largest_displacement, share(total.within_4_ulp, total.measured), total.measured, total.largest_ulps);
+      "t within 4 ulp of float: {:.4f} % of {} hits at no grazing angle, {:.3g} ulp at most; {} of the {} where "
+      "rounding "
+      "of a float sum is not more\n",
+      total.largest_displacement, share(total.within_4_ulp, total.measured), total.measured, total.largest_ulps,
+      total.conditioned_within_4_ulp, total.conditioned);
   for (const auto* offenders : {&total.missed_rays, &total.lost_rays, &total.phantom_rays, &total.wrong_side_rays,
-                                &lines.odd_rays, &lines.lost_rays})
+                                &total.limit_rays, &lines.odd_rays, &lines.lost_rays})
     print(*offenders);
   bool held = total.hits > total.rays / 10;
   for (std::size_t k = 0; k < kind_names.size(); ++k) held &= is_held(k, all.kinds[k], all.kind_lines[k]);

@@ -18,15 +18,16 @@ struct Draft {
   BlendField blend{};
   Vec3d focus{};
   double focus_size = 1.2;
+  double away = 0;  // from the origin, over the scene's size; 0: sometimes a little
 };
 
 Setting random_setting(Random& random) {
   Setting s;
-  s.degree = random.whole(3, 6);
+  s.degree = random.whole(3, 8);
   s.cavity = random.between(0, 1) < 0.8;
   const auto angles = traced_angles(s.degree, s.cavity);
   s.alpha = s.cavity ? angles[static_cast<std::size_t>(random.whole(0, 3))] : angles[random.whole(1, 2) == 1 ? 1 : 2];
-  if (random.between(0, 1) < 0.2) s.alpha = random.between(0.2, 1.5);
+  if (random.between(0, 1) < 0.2) s.alpha = random.between(s.cavity ? -0.8 : 0.2, 1.5);
   return s;
 }
 
@@ -91,8 +92,53 @@ Draft loop(Random& random) {
   return d;
 }
 
+// Skeletons that hardly are: as short as a rounding, twice in the same place, one inside another, pointed at one end or
+// at both, a joint of a straight line.
+Draft degenerate(Random& random) {
+  Draft d{random_scene(random, random_setting(random), random.whole(2, 4))};
+  auto& segments = d.blend.segments;
+  const Vec3d at = random.vector(0.8), along = random_direction(random);
+  const double r = random.between(0.1, 0.35);
+  segments.add({at, at + along * pow(10, random.between(-12, -3)), r, r}, {});
+  segments.add(segments.skeletons[0], {});
+  segments.add({at, at - along, r, random.between(0, 1) < 0.5 ? 0.0 : r * pow(10, random.between(-6, -1))}, {});
+  segments.add({at, at + along * 0.5, r, r}, {});
+  segments.add({at + along * 0.5, at + along, r, r}, {});
+  segments.add({at + along * 0.2, at + along * 0.7, 0.5 * r, 0.5 * r}, {});
+  d.blend.points.add({at - along * 0.5, 0.2}, {});
+  d.blend.points.add({at - along * 0.5, 0.2}, {});
+  d.focus = at;
+  d.focus_size = r;
+  return d;
+}
+
+// A ball, and on it smaller and smaller ones down to a ten-thousandth, and a hair of that size.
+Draft ratios(Random& random) {
+  Draft d{blend_of(random_setting(random))};
+  const Vec3d out = random_direction(random);
+  d.blend.points.add({{0, 0, 0}, 0.8}, {});
+  double radius = 0.8, surface = radius;
+  while (radius > 2e-4) {
+    radius *= random.between(0.05, 0.4);
+    surface += radius;
+    d.blend.points.add({out * surface, radius}, {});
+  }
+  const Vec3d tip = out * surface;
+  d.blend.segments.add({tip, tip + random_direction(random) * (40 * radius), radius, radius}, {});
+  d.focus = tip;
+  d.focus_size = pow(10, random.between(-4, -0.5));
+  return d;
+}
+
+Draft far_away(Random& random) {
+  Draft d = skeletons(random);
+  d.away = pow(10, random.between(2, 5));
+  return d;
+}
+
 using Draw = Draft (*)(Random&);
-constexpr std::array<Draw, kind_names.size()> draws{skeletons, thin_feature, nearly_touching, ring, loop};
+constexpr std::array<Draw, kind_names.size()> draws{skeletons, thin_feature, nearly_touching, ring,
+                                                    loop,      degenerate,   ratios,          far_away};
 
 void scale(BlendField& blend, double by, const Vec3d& move) {
   for (auto& s : blend.points.skeletons) s = {s.at * by + move, s.radius * by};
@@ -108,7 +154,8 @@ StressScene::StressScene(std::uint64_t number) {
   kind_ = number % draws.size();
   Draft draft = draws[kind_](random);
   const double factor = random.between(0, 1) < 0.5 ? 1 : pow(10, random.between(-4, 4));
-  const Vec3d move = random.between(0, 1) < 0.8 ? Vec3d{} : random.vector(30 * factor);
+  const double away = draft.away > 0 ? draft.away : random.between(0, 1) < 0.8 ? 0 : 30;
+  const Vec3d move = random.vector(away * factor);
   scale(draft.blend, factor, move);
   blend_ = std::move(draft.blend);
   size_ *= factor;

@@ -12,7 +12,8 @@
 
 namespace marrow::test {
 
-inline constexpr std::array kind_names{"skeletons", "thin feature", "nearly touching", "ring", "loop"};
+inline constexpr std::array kind_names{"skeletons", "thin feature", "nearly touching", "ring",
+                                       "loop",      "degenerate",   "ratios",          "far away"};
 
 /// One blend, the surfaces that are tested, and the oracle that judges them.
 class StressScene {

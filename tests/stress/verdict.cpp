@@ -35,12 +35,44 @@ Ray near_cells(const StressScene& scene, Ray ray) {
   return ray;
 }
 
+// Nearer to a skeleton than this no surface is but at the point of a cone: only its place can be judged there.
+double point_size(const StressScene& scene) { return 5e-7 * scene.size(); }
+
+// Sums in float are known to this, whatever the tracer does.
+constexpr double field_rounding = 5e-7;
+
+double ulp_of_float(double t) {
+  const auto f = static_cast<float>(t);
+  return static_cast<double>(std::nextafter(f, std::numeric_limits<float>::infinity()) - f);
+}
+
+void judge_limits(const StressScene& scene, const Ray& ray, const SurfaceHit& hit, double along, const char* family,
+                  Verdict& v) {
+  const auto ending = [&](double t_max) {
+    Ray r = ray;
+    r.t_max = t_max;
+    return r;
+  };
+  const double slack = 4 * ulp_of_float(hit.t) + 2 * field_rounding / along;
+  const auto at = scene.surfaces().first_hit(ending(hit.t));
+  const auto before = scene.surfaces().first_hit(ending(std::nextafter(hit.t, 0)));
+  const bool holds = at && at->t == hit.t && !before && scene.surfaces().occluded(ending(hit.t + slack)) &&
+                     !scene.surfaces().occluded(ending(hit.t - slack));
+  if (holds) return;
+  ++v.limits;
+  note(v.limit_rays, text(scene, ray, family, "limits not kept at", hit.t));
+}
+
 // The hit itself: on the exact surface, in its place on the ray, with a start for further rays that is outside.
 void judge_hit(const StressScene& scene, const Ray& ray, const SurfaceHit& hit, const char* family, bool from_afar,
                Verdict& v) {
   const Vec3d p = ray.at(hit.t);
   const BlendSample exact = evaluate(scene.blend(), p);
   const double slope = length(exact.corrected_gradient), distance = scene.oracle().skeleton_distance(p);
+  if (distance < point_size(scene)) {
+    ++v.points;
+    return;
+  }
   const double displacement = std::fabs(exact.corrected - 1) / (slope * distance);
   if (displacement < allowed_displacement) {
     v.largest_displacement = std::max(v.largest_displacement, displacement);
@@ -56,11 +88,13 @@ void judge_hit(const StressScene& scene, const Ray& ray, const SurfaceHit& hit, 
   }
   const double along = dot(exact.corrected_gradient, ray.direction);
   if (!from_afar || !(along > 0.1 * slope)) return;
+  judge_limits(scene, ray, hit, along, family, v);
   ++v.measured;
-  const auto t = static_cast<float>(hit.t);
-  const double ulp = static_cast<double>(std::nextafter(t, std::numeric_limits<float>::infinity()) - t);
-  const double ulps = std::fabs(1 - exact.corrected) / along / ulp;
+  const double ulp = ulp_of_float(hit.t), ulps = std::fabs(1 - exact.corrected) / along / ulp;
   v.within_4_ulp += ulps <= 4;
+  const bool conditioned = field_rounding / along < 4 * ulp;
+  v.conditioned += conditioned;
+  v.conditioned_within_4_ulp += conditioned && ulps <= 4;
   v.largest_ulps = std::max(v.largest_ulps, ulps);
 }
 
@@ -73,7 +107,7 @@ void judge_free_way(const StressScene& scene, const Ray& ray, double end, bool c
   const auto root = scene.oracle().first_root(before);
   if (!root) return;
   const double radius = scene.oracle().skeleton_distance(ray.at(*root));
-  if (end - *root < 1e-4 * radius) return;  // the hit itself
+  if (end - *root < std::max(1e-4 * radius, point_size(scene))) return;  // the hit itself
   const double excess = scene.oracle().largest_excess(ray, *root, std::min(end, *root + 4 * radius));
   if (excess < grazing_excess) {
     ++v.grazing;
@@ -103,8 +137,12 @@ void Verdict::add(const Verdict& b) {
   grazing += b.grazing;
   uncertified += b.uncertified;
   wrong_side += b.wrong_side;
+  limits += b.limits;
+  points += b.points;
   measured += b.measured;
   within_4_ulp += b.within_4_ulp;
+  conditioned += b.conditioned;
+  conditioned_within_4_ulp += b.conditioned_within_4_ulp;
   evaluations += b.evaluations;
   largest_displacement = std::max(largest_displacement, b.largest_displacement);
   largest_ulps = std::max(largest_ulps, b.largest_ulps);
@@ -112,6 +150,7 @@ void Verdict::add(const Verdict& b) {
   merge(lost_rays, b.lost_rays);
   merge(phantom_rays, b.phantom_rays);
   merge(wrong_side_rays, b.wrong_side_rays);
+  merge(limit_rays, b.limit_rays);
 }
 
 void judge(const StressScene& scene, const Ray& ray, const char* family, bool from_afar, Verdict& v) {

@@ -21,28 +21,35 @@ struct Verdict {
   std::uint64_t phantom = 0;
   /// The start of a further ray that the exact field says is inside.
   std::uint64_t wrong_side = 0;
+  /// A hit that is not the same, or not gone, when the ray ends at it, or just before it; or occluded() differs from
+  /// first_hit() for rays that end 4 ulp of float behind it, or before it.
+  std::uint64_t limits = 0;
   /// A hit off the surface by more than allowed_displacement, where the field is so flat that it is nearly 1 all the
   /// same.
   std::uint64_t displaced = 0;
   /// A stretch inside was skipped, but the field stays below 1 + grazing_excess on it.
   std::uint64_t grazing = 0;
+  /// A hit at the point of a cone of radius 0.
+  std::uint64_t points = 0;
   /// A ray that says itself that a gap stayed undecided.
   std::uint64_t uncertified = 0;
   /// Hits of camera rays that meet the surface at more than a grazing angle, and those of them whose t is within 4 ulp
   /// of float of the exact root's.
   std::uint64_t measured = 0, within_4_ulp = 0;
+  /// Those whose t the rounding of a sum in float moves by less than 4 ulp.
+  std::uint64_t conditioned = 0, conditioned_within_4_ulp = 0;
   std::uint64_t evaluations = 0;
   double largest_displacement = 0;  ///< over the distance to the skeleton, of hits that are not counted above
   double largest_ulps = 0;
-  std::vector<std::string> missed_rays, lost_rays, phantom_rays,
-      wrong_side_rays;  ///< the first few of each, to be traced again
+  std::vector<std::string> missed_rays, lost_rays, phantom_rays, wrong_side_rays,
+      limit_rays;  ///< the first few of each, to be traced again
 
   void add(const Verdict&);
 };
 
 /// A stretch inside counts as missed if the corrected field gets this far above 1 on it: the traced field may differ by
 /// 1e-5 of the radius, times the slope of some n - 1 over a radius.
-inline constexpr double grazing_excess = 5e-5;
+inline constexpr double grazing_excess = 1e-5;
 /// Allowed distance of a hit from the exact surface, over the distance to the skeleton.
 inline constexpr double allowed_displacement = 2e-5;
 

@@ -86,7 +86,9 @@ std::optional<double> Oracle::first_root(const Ray& ray) const {
     if (value(ray.at(t)) >= 1) break;
     if (t >= ray.t_max) return {};
     before = t;
-    t += certified_step(local(ray.at(t), ray.direction), ray.t_max - t, share);
+    // Towards the point of a cone steps shrink without end: none is below what doubles can tell.
+    const double least = 1e-14 * (t + max_component(abs(ray.origin)));
+    t += std::max(least, certified_step(local(ray.at(t), ray.direction), ray.t_max - t, share));
     if (t > ray.t_max) t = ray.t_max;
   }
   for (int i = 0; i < 40 && t > before; ++i) {

@@ -36,7 +36,7 @@ class Runs {
   }
 
   struct Run {
-    float begin, end;
+    float begin = 0, end = 0;
   };
   // The next run, or false.
   bool next(Run& run) {

@@ -29,7 +29,14 @@ inline float margin_at(const IsoCurve::View& iso, float x, float y) {
   return lower_curve_at(iso, turned_u(iso, x, y)) - turned_v(iso, x, y);
 }
 
-// The same for 16 points at once.
+// The same to within rounding: by the curve itself.
+inline float nominal_margin_at(const IsoCurve::View& iso, float x, float y) {
+  const float u = turned_u(iso, x, y);
+  if (!((u - iso.u_begin) * iso.inverse_step < static_cast<float>(iso.size - 1))) return -infinity;
+  return curve_at(iso, u).value - turned_v(iso, x, y);
+}
+
+// margin_at() for 16 points at once.
 using Index16 = int __attribute__((vector_size(64)));
 
 struct CurvePlace {

@@ -1,7 +1,9 @@
 // Certified steps along a ray with the field of one level of a block. Part of block_kernels_<set>.cpp.
 
-// Rounding of a sum of positive float terms and of positions: below 4e-6 relative for up to 2000 sources.
+// Rounding of a sum of positive float terms: below 4e-6 relative for up to 2000 sources.
 inline constexpr float rounding = 4e-6F;
+// Coordinates up to 1.7 in float are off by 2^-24 as t, as product and as sum; those of sources by 2^-24.
+inline constexpr float position_rounding = 2e-7F;
 
 // The field at one t, raised by the level's certified error, with what bounds it nearby.
 struct Sample {
@@ -12,7 +14,12 @@ struct Sample {
   float residual;  // lower V(u) - v of the field raised by the level's errors and by rounding: where it is positive the
                    // field is surely below 1, and some step from here can be certified
   float nominal;   // V(u) - v of the field as summed
-  float slope;     // derivative of the residual along the ray
+  // Where the residual is not positive but the nominal one is, "outside" can still be told to within rounding: by the
+  // nominal curve and unraised sums. What is passed over in that way is reported.
+  bool sure;                 // residual > 0
+  float margin;              // the residual, or the nominal one when not sure
+  float raise;               // factor of f and |G| for what rounding can do
+  float slope;               // derivative of the residual along the ray
   float v, v_slope, curve;   // v, its derivative along the ray, and V(u) of the field as summed
   float x_weight, y_weight;  // -d residual / dx, dy
 };
@@ -56,9 +63,17 @@ struct Marcher {
     p.curve = curve.value;
     p.s.f += level.f_error;
     p.y = y + level.g_error;
-    p.residual = margin_at(iso, p.s.f * (1 + rounding), p.y * (1 + rounding));
+    p.raise = 1 + rounding + position_rounding * static_cast<float>(block.degree + 1) / p.distance;
+    p.residual = margin_at(iso, p.s.f * p.raise, p.y * p.raise);
     if (!(p.residual == p.residual)) p.residual = p.nominal = -1;  // on a source: infinite field
+    p.sure = p.residual > 0;
+    p.margin = p.sure ? p.residual : p.nominal;
     return p;
+  }
+
+  // Positive where the field with these sums is below 1: surely, or, around a sample that is not sure, as summed.
+  float margin(const Sample& p, float x, float y) const {
+    return p.sure ? margin_at(block.iso, x * p.raise, y * p.raise) : nominal_margin_at(block.iso, x, y);
   }
 
   // (v / V)^(-1/(n-1)) - 1 of the field as summed, and its derivative: 0 on the surface and, near a single skeleton,
@@ -106,17 +121,18 @@ struct Marcher {
       length2 += end * end;
     }
     const float y_end = root_of(length2) + (p.s.third * series.gradient + level.far_g_bend) * hh + level.g_error;
-    const float x_up = max_of(p.s.f, x_end) * (1 + rounding), y_up = max_of(p.y, y_end) * (1 + rounding);
-    if (!(margin_at(block.iso, x_up, y_up) > 0)) return false;
+    const float y_up = max_of(p.y, y_end);
+    if (!(margin(p, max_of(p.s.f, x_end), y_up) > 0)) return false;
     if (!block.iso.two_sided) return true;
     const float x_low = min_of(p.s.f, p.s.f + p.s.df * h - bend) * (1 - rounding) - 2 * level.f_error;
-    return margin_at(block.iso, max_of(0, x_low), y_up) > 0;
+    return margin(p, max_of(0, x_low), y_up) > 0;
   }
 
-  // Whether the field is above 1 at t + h, by the same bounds and errors from below (alpha >= 0 only).
+  // Whether the field is above 1 at t + h, by the same bounds and errors from below. For alpha < 0 the curve rises,
+  // then falls in f: over an interval of f it is highest at its peak or at the end nearer to it.
   bool inside_at(const Sample& p, float h) const {
     const float q = abs_of(h) / p.distance;
-    if (!(q < 0.5F) || block.iso.two_sided) return false;
+    if (!(q < 0.5F)) return false;
     const Series series = series_of(1 / (1 - q));
     const float hh = h * h;
     float length2 = 0;
@@ -124,9 +140,11 @@ struct Marcher {
       const float end = p.s.g[i] + p.s.dg[i] * h;
       length2 += end * end;
     }
-    const float x = p.s.f - 2 * level.f_error + p.s.df * h - (p.s.second * series.field + level.far_bend) * hh;
+    const float bend = (p.s.second * series.field + level.far_bend) * hh, x_high = p.s.f + p.s.df * h + bend;
     const float y = root_of(length2) - (p.s.third * series.gradient + level.far_g_bend) * hh - level.g_error;
+    float x = x_high - 2 * bend - 2 * level.f_error;
     if (!(x > 0) || !(y > 0)) return false;
+    if (block.iso.two_sided) x = max_of(x, min_of(x_high, block.iso.peak_x));
     return curve_at(block.iso, turned_u(block.iso, x, y)).value < turned_v(block.iso, x, y);
   }
 
@@ -134,12 +152,12 @@ struct Marcher {
   float certified_step(const Sample& p, float sign, float limit) const {
     if (!(limit > 0)) return 0;
     const float most = min_of(limit, 0.85F * p.distance);
-    // Margin along the step, to second order: residual - b h - c h^2.
+    // Margin along the step, to second order: margin - b h - c h^2.
     const float m = static_cast<float>(block.degree);
     const float c = p.x_weight * (p.s.second * m * (m + 1) * 0.5F + level.far_bend) +
                     p.y_weight * (p.s.third * (m + 1) * (m + 2) * 0.5F + level.far_g_bend);
     const float b = -sign * p.slope;
-    const float model = 2 * p.residual / (b + root_of(max_of(0, b * b + 4 * max_of(c, 0) * p.residual)) + 1e-20F);
+    const float model = 2 * p.margin / (b + root_of(max_of(0, b * b + 4 * max_of(c, 0) * p.margin)) + 1e-20F);
     if (model > 0.8F * most && outside_until(p, sign * most)) return most;
     // Short steps end where the model does; long ones before, because their remainder grows faster than the model.
     float h = min_of(0.985F * model, 0.7F * most);

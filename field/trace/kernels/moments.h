@@ -67,7 +67,7 @@ void far_moments(const float* group, int groups, float* f_out, float* potential_
 template <int Exponent>
 inline void add_octant(const float* group, int groups, int exponent, const float (&c)[3], float radius,
                        OctantBounds& out) {
-  V16 a[12] = {}, touching{};
+  V16 a[12] = {}, touching{}, thinness{};
   for (int k = 0; k < groups; ++k, group += floats_per_piece_group) {
     const V16 wx = c[0] - load(group), wy = c[1] - load(group + 16), wz = c[2] - load(group + 32);
     const V16 ax = load(group + 48), ay = load(group + 64), az = load(group + 80);
@@ -89,6 +89,10 @@ inline void add_octant(const float* group, int groups, int exponent, const float
     a[3] += weight;
     a[4] += weight * tau;
     touching = larger(touching, share > 0.0F ? 1e-4F - nearest : V16{} - 1.0F);
+    // Farther away than this a piece is no more than a hundredth of the field, and its own surface ends before.
+    const V16 thick = larger(load(group + 192), splat(1e-9F));
+    const V16 thinness_here = nearest < 4.0F * thick ? 1.0F / thick : V16{};
+    thinness = larger(thinness, share > 0.0F ? thinness_here : V16{});
   }
   float s[16];
   sum_lanes(a, s);
@@ -98,6 +102,7 @@ inline void add_octant(const float* group, int groups, int exponent, const float
   out.weight += s[3];
   out.weighted_radius += s[4];
   if (largest_lane(touching) > 0) out.touches = true;
+  out.thinness = max_of(out.thinness, largest_lane(thinness));
 }
 
 void octant_bounds(const float* pieces, int curve_groups, int point_groups, int degree, OctantBounds* out) {

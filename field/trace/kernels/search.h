@@ -1,9 +1,15 @@
 // The first root along a stretch of a ray. Part of block_kernels_<set>.cpp.
 
+// A stretch, and how far it is known only to within rounding; empty at first.
+struct Doubt {
+  float begin = infinity, end = -infinity;
+};
+
 // `front` is the end of the stretch from t0 that is certified outside; islands are certified stretches beyond it,
 // nearest on top; `inside` is the nearest sample known not to be outside.
 struct Search {
-  static constexpr int most_islands = 8;
+  // Bisection halves the first gap before it adds an island: down to shortest_gap that is some 20 on top of the others.
+  static constexpr int most_islands = 40;
   struct Island {
     float begin, end;
     Sample sample;
@@ -11,28 +17,49 @@ struct Search {
   Marcher& march;
   float front, end;
   bool have_last = false, have_inside = false;
-  float undecided = infinity;  // where the first gap too short to decide was passed over
+  bool exact;                  // the level is the field itself: it tells what is inside
+  float undecided = infinity;  // where the first stretch was passed over that could not be decided
+  Doubt doubt;                 // the last such stretch, not in `undecided` yet
   Sample last, inside;         // last: the outside sample whose certificate reaches the front
   Island islands[most_islands];
   int island_count = 0;
 
-  Search(Marcher& m, float t0, float t1) : march(m), front(t0), end(t1) {}
+  Search(Marcher& m, float t0, float t1)
+      : march(m), front(t0), end(t1), exact(!(m.level.f_error > 0) && !(m.level.g_error > 0)) {}
 
   bool missed() const { return !have_inside && front >= end; }
   bool bracketed() const { return have_inside && island_count == 0; }
   float gap_end() const { return island_count > 0 ? islands[island_count - 1].begin : have_inside ? inside.t : end; }
 
   void reach(float t, const Sample& p) {
+    advance(t, p);
+    while (island_count > 0 && islands[island_count - 1].begin <= front) {
+      const Island& top = islands[--island_count];
+      if (top.end > front) advance(top.end, top.sample);
+    }
+  }
+
+  void advance(float t, const Sample& p) {
+    if (!p.sure) pass(t);
     front = t;
     last = p;
     have_last = true;
-    while (island_count > 0 && islands[island_count - 1].begin <= front) {
-      const Island& top = islands[--island_count];
-      if (top.end > front) {
-        front = top.end;
-        last = top.sample;
-      }
+  }
+
+  // What is before t is not decided.
+  void pass(float t) {
+    if (front > doubt.end) {
+      undecided = min_of(undecided, doubt.begin);
+      doubt.begin = front;
     }
+    doubt.end = t;
+  }
+
+  // Where the first stretch lies that was not decided. What ends at the crossing is the crossing, as well as it is
+  // known.
+  float undecided_before(float crossing) const {
+    const float tolerance = 2 * shortest_gap * (have_last ? last.distance : have_inside ? inside.distance : 1);
+    return doubt.end + tolerance >= crossing ? undecided : min_of(undecided, doubt.begin);
   }
 
   // How far the certificate of p reaches toward `limit`; exactly `limit` when it gets there.
@@ -42,7 +69,7 @@ struct Search {
   }
 
   void record(const Sample& p) {
-    if (p.residual <= 0) {
+    if ((exact ? p.nominal : p.residual) <= 0) {
       inside = p;
       have_inside = true;
       island_count = 0;
@@ -95,41 +122,57 @@ struct Search {
     return min_of(max_of(root - back, front + least), right - inset);
   }
 
-  // Newton's root from the last outside sample, when it is proved: the certificate reaches it to within the
-  // shortest gap, and the field is above 1 just behind it. The step is so short that the scaled Newton step, whose
-  // error is of third order, is exact to float.
+  // Newton's root from the last outside sample, when it is proved: the certificate reaches it to within the shortest
+  // gap, and the field is above 1 just behind it. The step is so short that the scaled Newton step, whose error is of
+  // third order, is exact to float.
   bool pinned(float& root) const {
-    if (!have_last || !(last.slope < 0)) return false;
-    const float step = -last.residual / last.slope, tolerance = shortest_gap * last.distance;
-    if (!(step < 1.2e-3F * last.distance)) return false;
-    const float scaled_step = march.scaled(last).newton_step();
-    root = last.t + (abs_of(scaled_step - step) < 0.1F * step + tolerance ? scaled_step : step);
+    if (!have_last) return false;
+    const Marcher::Scaled scaled = march.scaled(last);
+    const float step = scaled.newton_step(), tolerance = shortest_gap * last.distance;
+    root = max_of(front, last.t + step);
+    if (!(scaled.slope < 0) || !(step < 1.2e-3F * last.distance)) return false;
     if (!(root - front < tolerance) || !(root <= end)) return false;
     return (bracketed() && inside.t - root < tolerance) || march.inside_at(last, step + tolerance);
   }
 
-  // A gap too short to decide: with an inside sample behind it, its middle is the root; else a grazing touch, left.
+  // A gap too short to decide: with an inside sample behind it, it holds the root; else a grazing touch, left.
   bool give_up_gap(float& root) {
     const float right = gap_end();
     if (bracketed()) {
-      root = 0.5F * (front + right);
+      const float estimate = estimated_root();
+      root = estimate >= front && estimate <= right ? estimate : 0.5F * (front + right);
       return true;
     }
-    undecided = min_of(undecided, front);
+    pass(right);
     if (island_count > 0) reach(right, islands[island_count - 1].sample);
-    else if (have_last) reach(right, last);
     else front = right;
     return false;
   }
-};
 
-inline constexpr int most_samples = 200;
+  // Nothing can be told of gaps shorter than this, where p is.
+  bool too_short(const Sample& p) const {
+    const float right = gap_end(), middle = 0.5F * (front + right);
+    return right - front < shortest_gap * p.distance || !(middle > front && middle < right);
+  }
+
+  // The next place after `samples` of them, p the last. Newton's guesses are quick unless the field stays near 1 over a
+  // long way; halving the first gap always ends, because each half ends at a sample.
+  float next(const Sample& p, float before, int samples) const {
+    constexpr int patience = 48;
+    if (samples >= patience) return 0.5F * (front + gap_end());
+    // Where the field all but touches 1 certificates are short: look from the other side of the touch.
+    if (p.margin > 0 && front - before < shortest_gap * p.distance)
+      return front + min_of(0.5F * (gap_end() - front), 1e-3F * p.distance);
+    return guess();
+  }
+};
 
 // The coarse level: it finds where the surface may be, at a fraction of the cost. When it returns Near, the front is
 // certified and `guess` is close to the root.
 enum class Approach { Missed, SurelyInside, Near };
 
 inline Approach approach(Search& s, bool any, float& guess) {
+  constexpr int most_samples = 200;
   float next = 0.5F * (s.front + s.end);
   for (int i = 0; i < most_samples; ++i) {
     const Sample p = s.march.sample(next);
@@ -152,30 +195,19 @@ inline Approach approach(Search& s, bool any, float& guess) {
 // The fine level: it decides.
 inline Root decide(Search& s, float guess, bool any) {
   Root root;
-  for (int i = 0; i < most_samples; ++i) {
+  for (int samples = 1; !root.hit && !s.missed(); ++samples) {
     const Sample p = s.march.sample(guess);
     const float before = s.front;
     s.record(p);
-    if (s.missed()) return root;
-    root.undecided = s.undecided;
+    if (s.missed()) break;
     root.hit = s.pinned(root.t);
     if (!root.hit && any && s.have_inside) {
       root.hit = true;
       root.t = s.inside.t;
     }
-    if (root.hit) return root;
-    if (s.gap_end() - s.front < shortest_gap * p.distance) {
-      root.hit = s.give_up_gap(root.t);
-      root.undecided = s.undecided;
-      if (root.hit || s.missed()) return root;
-    }
-    guess = s.guess();
-    // Where the field all but touches 1 certificates are short: look from the other side of the touch.
-    if (p.residual > 0 && s.front - before < shortest_gap * p.distance)
-      guess = s.front + min_of(0.5F * (s.gap_end() - s.front), 1e-3F * p.distance);
+    if (!root.hit && s.too_short(p)) root.hit = s.give_up_gap(root.t);
+    guess = s.next(p, before, samples);
   }
-  root.undecided = min_of(s.undecided, s.front);
-  root.hit = s.have_inside;
-  root.t = s.gap_end();
+  root.undecided = s.undecided_before(root.hit ? root.t : infinity);
   return root;
 }
