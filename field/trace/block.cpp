@@ -4,10 +4,14 @@
 #include <array>
 #include <cmath>
 
+#include "field/trace/fine_cache.h"
 #include "field/trace/source_groups.h"
 
 namespace marrow {
 namespace {
+
+// From so much memory of blocks on, fine levels are not kept.
+constexpr std::size_t kept_bytes = std::size_t{1} << 30;
 
 // How far two boxes are apart; a lower bound of the distance of what they hold.
 double separation(const Box3& a, const Box3& b) {
@@ -197,13 +201,19 @@ std::uint64_t Block::surface(int octant) const {
   return slots.load(std::memory_order_relaxed);
 }
 
-const Block::Fine& Block::fine() const {
-  return fine_.get([&] {
-    const Level level = make_level(context_, context_.fine, context_.tree.surroundings(cell_), cell_);
-    float* const sources = context_.arena.allocate(level.source_floats() + far_floats);
-    return std::make_unique<const Fine>(Fine{write_level(level, sources, sources + level.source_floats()),
-                                             level.far.f_error, level.far.gradient_error});
-  });
+template <class Memory>
+FineLevel Block::make_fine(Memory& memory) const {
+  const Level level = make_level(context_, context_.fine, context_.tree.surroundings(cell_), cell_);
+  float* const sources = memory.allocate(level.source_floats() + far_floats);
+  return {write_level(level, sources, sources + level.source_floats()), level.far.f_error, level.far.gradient_error};
+}
+
+const FineLevel& Block::fine() const {
+  thread_local FineCache cache;
+  if (const FineLevel* kept = fine_.peek()) return *kept;
+  if (BlockArena::bytes_of_all() > kept_bytes)
+    return cache.get({context_.tracer, this}, [&](FineBuffer& buffer) { return make_fine(buffer); });
+  return fine_.get([&] { return std::make_unique<const FineLevel>(make_fine(context_.arena)); });
 }
 
 }  // namespace marrow

@@ -10,6 +10,7 @@
 #include "field/trace/block_arena.h"
 #include "field/trace/block_kernels.h"
 #include "field/trace/cell_tree.h"
+#include "field/trace/fine_level.h"
 #include "field/trace/lazy.h"
 
 namespace marrow {
@@ -27,7 +28,8 @@ class Block {
     const IsoCurve& iso;
     const BlockKernels& kernels;
     int degree;
-    BlockArena& arena;  ///< holds what blocks are made of
+    BlockArena& arena;     ///< holds what blocks are made of
+    std::uint64_t tracer;  ///< a number of its own for every tracer of the process
   };
   /// The context must outlive the block.
   Block(const Context&, const CellTree::Cell&);
@@ -38,19 +40,18 @@ class Block {
   const Vec3d& center() const { return cell_.center; }
   double half() const { return cell_.half; }
 
-  /// What is rendered, and certified bounds of its difference from the exact field, over the cell.
-  struct Fine {
-    FieldLevel level;
-    double f_error = 0, gradient_error = 0;
-  };
-  const Fine& fine() const;
-  const Fine* fine_if_made() const { return fine_.peek(); }
+  /// Kept as long as the fine levels of all blends fit into a certain memory; else good until this thread asks any
+  /// block again. It is the same in either case.
+  const FineLevel& fine() const;
+  const FineLevel* fine_if_kept() const { return fine_.peek(); }
 
  private:
   const Context& context_;
   CellTree::Cell cell_;
   BlockView view_;
-  Lazy<Fine> fine_;
+  template <class Memory>
+  FineLevel make_fine(Memory&) const;
+  Lazy<FineLevel> fine_;
   std::uint64_t surface(int octant) const;
   mutable std::array<std::atomic<std::uint64_t>, 8> surface_{};
   mutable std::atomic<std::uint8_t> surface_known_ = 0;  // a bit for each octant

@@ -1,0 +1,14 @@
+// The level that decides about roots: what is rendered.
+#pragma once
+
+#include "field/trace/block_kernels.h"
+
+namespace marrow {
+
+/// With certified bounds of its difference from the exact field, over its cell.
+struct FineLevel {
+  FieldLevel level;
+  double f_error = 0, gradient_error = 0;
+};
+
+}  // namespace marrow
