@@ -33,7 +33,7 @@ Vec3d vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 // polynomials and the remainders B3 and B4 of tracing.md, with series sums up to twice their values at 0 (a step of at
 // most a tenth of the distance). Twice the errors of the block, since a ray may start in its neighbour. Where no step
 // is proved, beside a touch of the surface with itself, the one that comes nearest to it. Block coordinates.
-double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent, const FineLevel& fine,
+double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent, const BlockLevel& fine,
                     const IsoCurve& iso, int degree) {
   const double slope = dot(vec(f.gradient), normal), n = degree;
   // As march.h: sums of floats, and positions in float.
@@ -85,7 +85,8 @@ struct BlendTracer::State {
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
         fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
-        context{sources.pieces(), tree, cutter, coarse, fine, iso, kernels, field.degree, arena, next_number()} {}
+        context{sources.pieces(),   tree,         cutter, coarse, fine, iso, kernels, field.degree, arena,
+                options.kept_bytes, next_number()} {}
 };
 
 Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const TraceOptions& options) {
@@ -216,7 +217,7 @@ TraceStatistics BlendTracer::statistics() const {
       if (b == nullptr) continue;
       ++s.blocks;
       s.bytes += sizeof(Block);
-      const FineLevel* fine = b->fine_if_kept();
+      const BlockLevel* fine = b->fine_if_kept();
       if (fine == nullptr) continue;
       s.sources += static_cast<std::size_t>((fine->level.curve_groups + fine->level.point_groups) * lanes);
       s.largest_error = std::max(s.largest_error, fine->f_error + fine->gradient_error / state_->field.degree);

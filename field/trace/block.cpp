@@ -4,14 +4,11 @@
 #include <array>
 #include <cmath>
 
-#include "field/trace/fine_cache.h"
+#include "field/trace/level_cache.h"
 #include "field/trace/source_groups.h"
 
 namespace marrow {
 namespace {
-
-// From so much memory of blocks on, fine levels are not kept.
-constexpr std::size_t kept_bytes = std::size_t{1} << 30;
 
 // How far two boxes are apart; a lower bound of the distance of what they hold.
 double separation(const Box3& a, const Box3& b) {
@@ -131,20 +128,25 @@ struct FarRange {
   static float length(const std::array<float, 4>& v) { return std::sqrt(v[1] * v[1] + v[2] * v[2] + v[3] * v[3]); }
 };
 
-FieldLevel write_level(const Level& level, float* sources, float* far) {
+template <class Memory>
+BlockLevel write_level(const Level& level, Memory& memory) {
   const auto curve_floats = static_cast<std::size_t>(level.curves.group_count() * floats_per_group);
+  float* const sources = memory.allocate(level.source_floats() + far_floats);
+  float* const far = sources + level.source_floats();
   std::copy_n(level.curves.data(), curve_floats, sources);
   std::copy_n(level.points.data(), level.source_floats() - curve_floats, sources + curve_floats);
   write_far(level.far, far);
   const FarRange range(far);
-  return {.sources = sources,
-          .curve_groups = level.curves.group_count(),
-          .point_groups = level.points.group_count(),
-          .far = far,
-          .far_slope = range.slope[0],
-          .far_g_slope = FarRange::length(range.slope),
-          .far_bend = range.bend[0],
-          .far_g_bend = FarRange::length(range.bend)};
+  return {.level = {.sources = sources,
+                    .curve_groups = level.curves.group_count(),
+                    .point_groups = level.points.group_count(),
+                    .far = far,
+                    .far_slope = range.slope[0],
+                    .far_g_slope = FarRange::length(range.slope),
+                    .far_bend = range.bend[0],
+                    .far_g_bend = FarRange::length(range.bend)},
+          .f_error = level.far.f_error,
+          .gradient_error = level.far.gradient_error};
 }
 
 bool holds_surface(const CubeBounds& b, const IsoCurve& iso) {
@@ -174,46 +176,54 @@ std::uint64_t surface_slots(const Block::Context& context, const FieldLevel& lev
 
 }  // namespace
 
-Block::Block(const Context& context, const CellTree::Cell& cell) : context_(context), cell_(cell) {
-  const Level level = make_level(context, context.coarse, context.tree.coarse_surroundings(cell), cell);
-  float* const sources = context.arena.allocate(level.source_floats() + far_floats);
-  FieldLevel coarse = write_level(level, sources, sources + level.source_floats());
-  coarse.f_error = static_cast<float>(1.0001 * level.far.f_error);
-  coarse.g_error = static_cast<float>(1.0001 * level.far.gradient_error);
-  view_ = {
-      .find_surface = [](const void* owner, int octant) { return static_cast<const Block*>(owner)->surface(octant); },
-      .coarse = coarse,
-      .make_fine = [](const void* owner) -> const FieldLevel& {
-        return static_cast<const Block*>(owner)->fine().level;
-      },
-      .owner = this,
-      .degree = context.degree,
-      .iso = context.iso.view()};
-}
+Block::Block(const Context& context, const CellTree::Cell& cell)
+    : context_(context),
+      cell_(cell),
+      view_{.find_surface = [](const void* owner,
+                               int octant) { return static_cast<const Block*>(owner)->surface(octant); },
+            .make_coarse = [](const void* owner) -> const FieldLevel& {
+              return static_cast<const Block*>(owner)->coarse().level;
+            },
+            .make_fine = [](const void* owner) -> const FieldLevel& {
+              return static_cast<const Block*>(owner)->fine().level;
+            },
+            .owner = this,
+            .degree = context.degree,
+            .iso = context.iso.view()} {}
 
 // Whoever asks first finds the same.
 std::uint64_t Block::surface(int octant) const {
   auto& slots = surface_[static_cast<std::size_t>(octant)];
   if (!(surface_known_.load(std::memory_order_acquire) >> octant & 1)) {
-    slots.store(surface_slots(context_, view_.coarse, octant), std::memory_order_relaxed);
+    slots.store(surface_slots(context_, coarse().level, octant), std::memory_order_relaxed);
     surface_known_.fetch_or(static_cast<std::uint8_t>(1U << octant), std::memory_order_release);
   }
   return slots.load(std::memory_order_relaxed);
 }
 
-template <class Memory>
-FineLevel Block::make_fine(Memory& memory) const {
-  const Level level = make_level(context_, context_.fine, context_.tree.surroundings(cell_), cell_);
-  float* const sources = memory.allocate(level.source_floats() + far_floats);
-  return {write_level(level, sources, sources + level.source_floats()), level.far.f_error, level.far.gradient_error};
+template <class Make>
+const BlockLevel& Block::level(const Lazy<BlockLevel>& kept, LevelCache& cache, const Make& make) const {
+  if (const BlockLevel* ready = kept.peek()) return *ready;
+  if (BlockArena::bytes_of_all() >= context_.kept_bytes) return cache.get({context_.tracer, this}, make);
+  return kept.get([&] { return std::make_unique<const BlockLevel>(make(context_.arena)); });
 }
 
-const FineLevel& Block::fine() const {
-  thread_local FineCache cache;
-  if (const FineLevel* kept = fine_.peek()) return *kept;
-  if (BlockArena::bytes_of_all() > kept_bytes)
-    return cache.get({context_.tracer, this}, [&](FineBuffer& buffer) { return make_fine(buffer); });
-  return fine_.get([&] { return std::make_unique<const FineLevel>(make_fine(context_.arena)); });
+const BlockLevel& Block::coarse() const {
+  thread_local LevelCache cache;
+  return level(coarse_, cache, [&](auto& memory) {
+    BlockLevel coarse =
+        write_level(make_level(context_, context_.coarse, context_.tree.coarse_surroundings(cell_), cell_), memory);
+    coarse.level.f_error = static_cast<float>(1.0001 * coarse.f_error);
+    coarse.level.g_error = static_cast<float>(1.0001 * coarse.gradient_error);
+    return coarse;
+  });
+}
+
+const BlockLevel& Block::fine() const {
+  thread_local LevelCache cache;
+  return level(fine_, cache, [&](auto& memory) {
+    return write_level(make_level(context_, context_.fine, context_.tree.surroundings(cell_), cell_), memory);
+  });
 }
 
 }  // namespace marrow

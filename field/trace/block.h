@@ -9,14 +9,16 @@
 #include "field/math/box3.h"
 #include "field/trace/block_arena.h"
 #include "field/trace/block_kernels.h"
+#include "field/trace/block_level.h"
 #include "field/trace/cell_tree.h"
-#include "field/trace/fine_level.h"
 #include "field/trace/lazy.h"
 
 namespace marrow {
 
-/// Coordinates of the block: x = (p - center) / half. The sources with which roots are decided are gathered when the
-/// first ray needs them; safe to use from many threads.
+class LevelCache;
+
+/// Coordinates of the block: x = (p - center) / half. Its levels are made when the first ray needs them; safe to use
+/// from many threads.
 class Block {
  public:
   struct Context {
@@ -28,8 +30,9 @@ class Block {
     const IsoCurve& iso;
     const BlockKernels& kernels;
     int degree;
-    BlockArena& arena;     ///< holds what blocks are made of
-    std::uint64_t tracer;  ///< a number of its own for every tracer of the process
+    BlockArena& arena;       ///< holds what blocks are made of
+    std::size_t kept_bytes;  ///< see TraceOptions
+    std::uint64_t tracer;    ///< a number of its own for every tracer of the process
   };
   /// The context must outlive the block.
   Block(const Context&, const CellTree::Cell&);
@@ -40,18 +43,19 @@ class Block {
   const Vec3d& center() const { return cell_.center; }
   double half() const { return cell_.half; }
 
-  /// Kept as long as the fine levels of all blends fit into a certain memory; else good until this thread asks any
-  /// block again. It is the same in either case.
-  const FineLevel& fine() const;
-  const FineLevel* fine_if_kept() const { return fine_.peek(); }
+  /// Kept as long as the levels of all blends fit into a certain memory; else good until this thread asks another block
+  /// for the same one. They are the same in either case.
+  const BlockLevel& coarse() const;
+  const BlockLevel& fine() const;
+  const BlockLevel* fine_if_kept() const { return fine_.peek(); }
 
  private:
   const Context& context_;
   CellTree::Cell cell_;
   BlockView view_;
-  template <class Memory>
-  FineLevel make_fine(Memory&) const;
-  Lazy<FineLevel> fine_;
+  template <class Make>
+  const BlockLevel& level(const Lazy<BlockLevel>& kept, LevelCache&, const Make&) const;
+  Lazy<BlockLevel> coarse_, fine_;
   std::uint64_t surface(int octant) const;
   mutable std::array<std::atomic<std::uint64_t>, 8> surface_{};
   mutable std::atomic<std::uint8_t> surface_known_ = 0;  // a bit for each octant

@@ -36,13 +36,15 @@ struct BlockView {
   /// For an octant of the block (x the lowest bit) a bit for each of its 4 x 4 x 4 slots, x + 4 y + 16 z, that may hold
   /// surface.
   std::uint64_t (*find_surface)(const void* owner, int octant) = nullptr;
-  FieldLevel coarse;
-  const FieldLevel& (*make_fine)(const void* owner) = nullptr;  ///< made when it is first needed
+  /// Made when they are needed; good until the same is asked of another block.
+  const FieldLevel& (*make_coarse)(const void* owner) = nullptr;
+  const FieldLevel& (*make_fine)(const void* owner) = nullptr;
   const void* owner = nullptr;
   int degree = 4;
   IsoCurve::View iso;
 
   std::uint64_t surface(int octant) const { return find_surface(owner, octant); }
+  const FieldLevel& coarse() const { return make_coarse(owner); }
   const FieldLevel& fine() const { return make_fine(owner); }
 };
 

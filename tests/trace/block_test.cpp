@@ -59,8 +59,8 @@ TEST(Block, LevelsAreWithinTheirStatedErrors) {
     for (int i = 0; i < 40; ++i, ++blocks) {
       const Block block =
           stage.block(static_cast<std::size_t>(random.whole(0, static_cast<int>(stage.cells.size()) - 1)));
-      const FineLevel& traced = block.fine();
-      const FieldLevel& rough = block.view().coarse;
+      const BlockLevel& traced = block.fine();
+      const FieldLevel& rough = block.coarse().level;
       largest_fine = std::max(largest_fine, traced.f_error + traced.gradient_error / s.degree);
       for (int k = 0; k < 25; ++k) {
         const Vec3d x = random.vector(1), p = block.center() + x * block.half();
@@ -82,7 +82,7 @@ TEST(Block, ErrorIsWithinTheTolerance) {
     const Stage stage(random_scene(random, s, 12));
     for (std::size_t i = 0; i < stage.cells.size(); i += 29) {
       const Block block = stage.block(i);
-      const FineLevel& fine = block.fine();
+      const BlockLevel& fine = block.fine();
       EXPECT_LT(fine.f_error + fine.gradient_error / s.degree, 1e-5 * (s.degree - 1)) << name_of(s);
     }
   }

@@ -43,7 +43,8 @@ struct Stage {
         fine(field.degree, budget_of(TraceOptions{}.tolerance, field.degree), kernels),
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
         cells(tree.cells()),
-        context{sources.pieces(), tree, cutter, coarse, fine, iso, kernels, field.degree, arena, 0} {}
+        context{sources.pieces(),          tree, cutter, coarse, fine, iso, kernels, field.degree, arena,
+                TraceOptions{}.kept_bytes, 0} {}
 
   Block block(std::size_t cell) const { return Block(context, cells[cell]); }
   double value(const Vec3d& p) const { return corrected_value(field, p); }

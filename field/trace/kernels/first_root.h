@@ -2,7 +2,7 @@
 
 // The coarse level finds where to look, the fine level decides.
 inline Root root_in(const BlockView& block, const LocalRay& ray, float t0, float t1, bool any) {
-  Marcher march(block, block.coarse, ray);
+  Marcher march(block, block.coarse(), ray);
   Search search(march, t0, t1);
   Root root;
   float guess = t0;

@@ -1,4 +1,4 @@
-// The level that decides about roots: what is rendered.
+// One of the two levels of a block.
 #pragma once
 
 #include "field/trace/block_kernels.h"
@@ -6,7 +6,7 @@
 namespace marrow {
 
 /// With certified bounds of its difference from the exact field, over its cell.
-struct FineLevel {
+struct BlockLevel {
   FieldLevel level;
   double f_error = 0, gradient_error = 0;
 };

@@ -1,4 +1,4 @@
-// Fine levels that are not kept: each thread remembers its last ones.
+// Levels of blocks that are not kept: each thread remembers its last ones.
 #pragma once
 
 #include <array>
@@ -7,12 +7,12 @@
 #include <memory>
 #include <new>
 
-#include "field/trace/fine_level.h"
+#include "field/trace/block_level.h"
 
 namespace marrow {
 
-/// Room for one fine level after another, 64-byte aligned.
-class FineBuffer {
+/// Room for one level after another, 64-byte aligned.
+class LevelBuffer {
  public:
   float* allocate(std::size_t float_count) {
     if (float_count > capacity_) {
@@ -32,7 +32,7 @@ class FineBuffer {
 };
 
 /// For one thread. What it returns is good until this thread asks again.
-class FineCache {
+class LevelCache {
  public:
   struct Key {
     std::uint64_t tracer;
@@ -40,9 +40,9 @@ class FineCache {
     bool operator==(const Key&) const = default;
   };
 
-  /// `make(buffer)` returns a FineLevel that lies in the buffer.
+  /// `make(buffer)` returns a BlockLevel that lies in the buffer.
   template <class Make>
-  const FineLevel& get(const Key& key, const Make& make) {
+  const BlockLevel& get(const Key& key, const Make& make) {
     Entry& entry = entries_[(reinterpret_cast<std::uintptr_t>(key.block) >> 6) * 0x9e3779b97f4a7c15U >> shift];
     if (entry.key != key) {
       entry.key = {};
@@ -56,8 +56,8 @@ class FineCache {
   static constexpr int bits = 8, shift = 64 - bits;
   struct Entry {
     Key key{};
-    FineBuffer buffer;
-    FineLevel level;
+    LevelBuffer buffer;
+    BlockLevel level;
   };
   std::array<Entry, std::size_t{1} << bits> entries_;
 };
