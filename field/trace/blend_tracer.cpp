@@ -138,11 +138,12 @@ struct RayInCube {
 
 std::optional<CellHit> BlendTracer::first_hit(std::size_t tile, const Ray& ray, bool any, CellLog& log) const {
   const Vec3d& direction = ray.direction;
-  auto [enter, exit] = clip(tile_box(tile), ray, {1 / direction.x, 1 / direction.y, 1 / direction.z});
+  const Tile& made = state_->tree.tile(tile);
+  auto [enter, exit] = clip(made.content_box(), ray, {1 / direction.x, 1 / direction.y, 1 / direction.z});
   log.enter = enter;
   if (any) exit = std::min(exit, ray.t_max);
   if (!(enter < exit)) return {};
-  const auto hit = hit_in(state_->tree.tile(tile), ray, any, enter, exit, log);
+  const auto hit = hit_in(made, ray, any, enter, exit, log);
   return hit && hit->t <= ray.t_max ? hit : std::nullopt;
 }
 
@@ -152,7 +153,7 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, boo
   const TileContent& content = tile.content();
   const RayInCube cube(ray, tile.place().center, tile.place().half);
   Walk walk;
-  state_->kernels.walk(content.occupied(), cube.local, cube.to_local(enter), cube.to_local(exit), walk);
+  state_->kernels.walk(tile.occupied(), cube.local, cube.to_local(enter), cube.to_local(exit), walk);
   const auto holder = [&](int i) {
     const int octant = path_of(walk.slot[i]).outer;
     return content.large_cells >> octant & 1 ? slot_at({octant, 0}) : walk.slot[i];
@@ -162,15 +163,20 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, boo
     const double from = std::max(enter, cube.to_world(walk.begin[i]));
     while (i + 1 < walk.count && holder(i + 1) == slot) ++i;
     const double to = std::min(exit, cube.to_world(walk.end[i]));
-    const auto hit = content.cells >> slot & 1 ? hit_in(block(tile, slot), ray, any, from, to, log)
+    const auto hit = content.cells >> slot & 1 ? hit_in(tile, slot, ray, any, from, to, log)
                                                : hit_in(state_->tree.child(tile, slot), ray, any, from, to, log);
     if (hit) return hit;
   }
   return {};
 }
 
-std::optional<CellHit> BlendTracer::hit_in(const Block& b, const Ray& ray, bool any, double enter, double exit,
-                                           CellLog& log) const {
+std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray& ray, bool any, double enter,
+                                           double exit, CellLog& log) const {
+  const Block& b = block(tile, slot);
+  if (b.empty()) {
+    tile.note_empty(slot);
+    return {};
+  }
   const RayInCube cube(ray, b.center(), b.half());
   const Root root = state_->kernels.first_root(
       b.view(), cube.local,

@@ -83,7 +83,7 @@ class BlendTracer {
   struct State;
   explicit BlendTracer(std::unique_ptr<State>);
   std::optional<CellHit> hit_in(const Tile&, const Ray&, bool any, double enter, double exit, CellLog&) const;
-  std::optional<CellHit> hit_in(const Block&, const Ray&, bool any, double enter, double exit, CellLog&) const;
+  std::optional<CellHit> hit_in(const Tile&, int slot, const Ray&, bool any, double enter, double exit, CellLog&) const;
   const Block& block(const Tile&, int slot) const;
   std::unique_ptr<State> state_;
 };

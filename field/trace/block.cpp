@@ -154,22 +154,25 @@ bool holds_surface(const CubeBounds& b, const IsoCurve& iso) {
   return b.touches || !iso.outside(0, static_cast<double>(b.f_high), static_cast<double>(b.g_high));
 }
 
-// Of an octant of a block those octants of octants that bounds do not prove to be outside or inside. They are taken a
-// little larger than they are, by far more than the rounding of rays in float.
+// Whether surface can be in a cube of a block, which is taken a little larger than it is, by far more than the rounding
+// of rays in float.
+bool may_hold(const Block::Context& context, const FieldLevel& level, const Vec3d& center, double half) {
+  constexpr double overlap = 1e-4;
+  const float c[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
+  return holds_surface(context.kernels.cube_bounds(level, context.degree, c, static_cast<float>(half + overlap)),
+                       context.iso);
+}
+
+// The octants of octants of an octant of a block that bounds do not prove to be outside or inside.
 std::uint64_t surface_slots(const Block::Context& context, const FieldLevel& level, int octant) {
-  constexpr float overlap = 1e-4F;
-  const auto may_hold = [&](const Vec3d& center, float half) {
-    const float c[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
-    return holds_surface(context.kernels.cube_bounds(level, context.degree, c, half + overlap), context.iso);
-  };
   const Vec3d whole = octant_center({0, 0, 0}, 1, octant);
   std::uint64_t slots = 0;
-  if (!may_hold(whole, 0.5F)) return slots;
   for (int outer = 0; outer < 8; ++outer) {
     const Vec3d center = octant_center(whole, 0.5, outer);
-    if (!may_hold(center, 0.25F)) continue;
+    if (!may_hold(context, level, center, 0.25)) continue;
     for (int inner = 0; inner < 8; ++inner)
-      if (may_hold(octant_center(center, 0.25, inner), 0.125F)) slots |= std::uint64_t{1} << slot_at({outer, inner});
+      if (may_hold(context, level, octant_center(center, 0.25, inner), 0.125))
+        slots |= std::uint64_t{1} << slot_at({outer, inner});
   }
   return slots;
 }
@@ -189,10 +192,14 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
             },
             .owner = this,
             .degree = context.degree,
-            .iso = context.iso.view()} {}
+            .iso = context.iso.view()} {
+  for (int octant = 0; octant < 8; ++octant)
+    if (may_hold(context, coarse().level, octant_center({0, 0, 0}, 1, octant), 0.5)) octants_ |= 1U << octant;
+}
 
 // Whoever asks first finds the same.
 std::uint64_t Block::surface(int octant) const {
+  if (!(octants_ >> octant & 1)) return 0;
   auto& slots = surface_[static_cast<std::size_t>(octant)];
   if (!(surface_known_.load(std::memory_order_acquire) >> octant & 1)) {
     slots.store(surface_slots(context_, coarse().level, octant), std::memory_order_relaxed);

@@ -40,6 +40,8 @@ class Block {
   Block& operator=(const Block&) = delete;
 
   const BlockView& view() const { return view_; }
+  /// No octant can hold surface.
+  bool empty() const { return octants_ == 0; }
   const Vec3d& center() const { return cell_.center; }
   double half() const { return cell_.half; }
 
@@ -57,6 +59,7 @@ class Block {
   const BlockLevel& level(const Lazy<BlockLevel>& kept, LevelCache&, const Make&) const;
   Lazy<BlockLevel> coarse_, fine_;
   std::uint64_t surface(int octant) const;
+  unsigned octants_ = 0;  // a bit for each that may hold surface
   mutable std::array<std::atomic<std::uint64_t>, 8> surface_{};
   mutable std::atomic<std::uint8_t> surface_known_ = 0;  // a bit for each octant
 };

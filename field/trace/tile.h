@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstdint>
 #include <memory>
@@ -36,6 +37,8 @@ struct TileContent {
 
   /// All slots that hold something.
   std::uint64_t occupied() const;
+  /// The slots of the cell that goes by this one.
+  std::uint64_t slots_of_cell(int slot) const;
 };
 
 /// Blocks of cells and smaller tiles are made when asked for.
@@ -47,6 +50,12 @@ class Tile {
 
   const TilePlace& place() const { return place_; }
   const TileContent& content() const { return content_; }
+  /// The slots that hold something, less those noted as empty.
+  std::uint64_t occupied() const { return occupied_.load(std::memory_order_relaxed); }
+  /// A block has been found to hold no surface: rays need not ask for it again.
+  void note_empty(int slot) const;
+  /// Around all that the tile holds.
+  const Box3& content_box() const { return content_box_; }
   const Surroundings& coarse() const { return coarse_; }
   const Lazy<Surroundings>& fine() const { return fine_; }
   const Lazy<Surroundings>& fine_of_octant(int octant) const { return octants_[static_cast<std::size_t>(octant)]; }
@@ -63,6 +72,8 @@ class Tile {
 
   TilePlace place_;
   TileContent content_;
+  mutable std::atomic<std::uint64_t> occupied_;
+  Box3 content_box_;
   Surroundings coarse_;
   Lazy<Surroundings> fine_;
   std::array<Lazy<Surroundings>, 8> octants_;

@@ -27,7 +27,7 @@ struct Variant {
 std::vector<Variant> variants_here() {
   std::vector<Variant> all;
   for (const std::string& name : sets_here()) all.push_back({name, {.instruction_set = name}});
-  all.push_back({"nothing kept", {.kept_bytes = 0}});
+  all.push_back({"nothing kept", {.instruction_set = "", .kept_bytes = 0}});
   return all;
 }
 
