@@ -19,7 +19,7 @@ struct KindsOf<std::variant<Kinds...>> {
 struct NameOfKind {
   template <class Kind>
   static std::string GetName(int) {
-    return std::string(Kind::info.name);
+    return std::string(info_of_kind<Kind>().name);
   }
 };
 
@@ -43,7 +43,9 @@ class EveryKind : public testing::Test {
     }
   }
 };
-TYPED_TEST_SUITE(EveryKind, KindsOf<AnyNode>::type, NameOfKind);
+// Those of scenes, and what compile() makes of placements and unions; blends have tests of their own.
+using Kinds = tree::Extended<AnyNode, AffineWarp, CrispUnion>::type;
+TYPED_TEST_SUITE(EveryKind, KindsOf<Kinds>::type, NameOfKind);
 
 TYPED_TEST(EveryKind, EnclosuresHoldValuesAndSlopes) {
   Checks checks;
@@ -106,7 +108,7 @@ TYPED_TEST(EveryKind, IgnoresZerosWhereItSaysSo) {
   if constexpr (requires { TypeParam::ignores_zeros; }) {
     for (int trial = 0; trial < 1000; ++trial) {
       const std::vector<double> all = child_values(static_cast<std::size_t>(this->random_.whole(1, 5)), this->random_);
-      if (all.size() < TypeParam::info.min_children) continue;
+      if (all.size() < info_of_kind<TypeParam>().min_children) continue;
       const TypeParam node = random_node<TypeParam>(all.size(), this->random_);
       std::vector<double> some;
       for (const double x : all)
@@ -121,9 +123,9 @@ TYPED_TEST(EveryKind, IgnoresZerosWhereItSaysSo) {
 TYPED_TEST(EveryKind, StaysBelowALevelWhenItsChildrenDo) {
   if constexpr (SmallTree<TypeParam>::is_operator) {
     for (int trial = 0; trial < 3000; ++trial) {
-      const auto count =
-          std::max<std::size_t>(TypeParam::info.min_children, static_cast<std::size_t>(this->random_.whole(1, 5)));
-      if (count > TypeParam::info.max_children) continue;
+      const auto count = std::max<std::size_t>(info_of_kind<TypeParam>().min_children,
+                                               static_cast<std::size_t>(this->random_.whole(1, 5)));
+      if (count > info_of_kind<TypeParam>().max_children) continue;
       const TypeParam node = random_node<TypeParam>(count, this->random_);
       const double level = this->random_.between(0.05, 1.5);
       double child_level = level;
