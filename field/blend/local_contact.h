@@ -45,6 +45,8 @@ class LocalContact {
   bool adapts_to_radii() const { return radii_; }
   bool adapts_to_density() const { return density_; }
   double contact() const { return contact_; }
+  /// No angle is smaller: that of the ring, which may be below 0, or `contact`.
+  double least() const { return least_; }
 
   AlphaSample at(const Neighbourhood&) const;
   /// The same with second derivatives.
