@@ -1,10 +1,9 @@
 // Every kind of node, with random parameters in small trees, keeps the laws of fields; a new kind needs no line here.
-#include <cstdlib>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include "tests/tree/laws.h"
+#include "tests/tree/laws_in_doubles.h"
 #include "tests/tree/small_tree.h"
 
 namespace marrow::test {
@@ -22,12 +21,6 @@ struct NameOfKind {
     return std::string(info_of_kind<Kind>().name);
   }
 };
-
-/// Checks of enclosures and of gradients for each kind: few in the suite, MARROW_LAW_CHECKS of them at night.
-std::uint64_t wanted_checks() {
-  const char* text = std::getenv("MARROW_LAW_CHECKS");
-  return text ? std::strtoull(text, nullptr, 10) : 6000;
-}
 
 template <class Kind>
 class EveryKind : public testing::Test {
@@ -64,7 +57,7 @@ TYPED_TEST(EveryKind, DerivativesAreThoseOfDifferences) {
     for (int i = 0; i < 8; ++i) {
       const Vec3d p = tree.eventful_point(this->random_);
       expect_gradient(tree, p, checks);
-      expect_hessian(tree, p, checks);
+      if (i % 2 == 0) expect_hessian(tree, p, checks);
     }
     return checks.slopes < wanted_checks();
   });

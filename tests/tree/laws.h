@@ -186,13 +186,13 @@ struct Bend {
   double change(std::size_t j) const { return std::fabs(rise[j] - fall[j]); }
 };
 template <class Field>
-Bend bend_of(const Field& field, const Vec3d& p, std::size_t axis, double step) {
+Bend bend_of(const Field& field, const Vec3d& p, const PreciseGradient& here, std::size_t axis, double step) {
   const auto shifted = [&](double h) {
     Vec3d q = p;
     q[axis] += h;
     return field.value(jet_variables(precise(q)));
   };
-  const PreciseGradient behind = shifted(-step), here = shifted(0), ahead = shifted(step);
+  const PreciseGradient behind = shifted(-step), ahead = shifted(step);
   const long double before = static_cast<long double>(p[axis]) - (p[axis] - step);
   const long double after = static_cast<long double>(p[axis] + step) - p[axis];
   Bend bend;
@@ -213,11 +213,12 @@ void expect_hessian(const Field& field, const Vec3d& p, Checks& checks) {
   ASSERT_NEAR(jet.value, gradient.value, 1e-13 * (1 + std::fabs(jet.value) + steepness(gradient)));
   for (std::size_t i = 0; i < 3; ++i)
     ASSERT_NEAR(jet.slope[i], gradient.slope[i], 1e-10 * (1 + std::fabs(gradient.slope[i]))) << "slope " << i;
+  const PreciseGradient here = field.value(jet_variables(precise(p)));
   for (std::size_t i = 0; i < 3; ++i) {
     std::array<bool, 3> rough{}, agrees{};
     Bend bend;
     for (const double step : difference_steps) {
-      bend = bend_of(field, p, i, step);
+      bend = bend_of(field, p, here, i, step);
       for (std::size_t k = 0; k < 6; ++k) {
         const auto [row, j] = HessianJet::at[k];
         if (row != i || rough[j] || agrees[j]) continue;
