@@ -56,7 +56,7 @@ Interval around(double middle, double slope, double rho, const Interval& range) 
 Interval alpha_bounds(const BlendField& blend, const SumBounds& sum, const Box3& box) {
   if (!blend.alpha_varies()) return blend.alpha;
   if (blend.alpha_source) return clamped(blend.alpha_source->bounds(box), {-1, std::numbers::pi / 2});
-  if (blend.local_contact) return {0, std::numbers::pi / 2};
+  if (blend.local_contact) return {blend.local_contact->least(), std::numbers::pi / 2};
   const double middle = alpha_at(blend, sum.center()).value;
   if (blend.alpha_per_skeleton) return around(middle, sum.log_slope(), sum.rho(), skeleton_angles(blend));
   // Weights f_i f_j are twice as steep, as is the mean direction v of a strand; u = v / |v| and so u_i . u_j changes by

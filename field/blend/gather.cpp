@@ -87,11 +87,6 @@ Gathered by_direction(const BlendField& blend, const Vec3d& p) {
   return all;
 }
 
-double mean_radius(const PointSkeleton& s) { return s.radius; }
-double mean_radius(const SegmentSkeleton& s) { return std::sqrt(s.radius_from) * std::sqrt(s.radius_to); }
-double mean_radius(const ArcSkeleton& s) { return std::sqrt(s.radius_from) * std::sqrt(s.radius_to); }
-double mean_radius(const TriangleSkeleton& s) { return (s.radii[0] + s.radii[1] + s.radii[2]) / 3; }
-
 // Sums of f_i, f_i l_i and f_i l_i^2, with l_i the logarithm of a radius over that of the first primitive.
 class Spread {
  public:

@@ -6,6 +6,7 @@
 
 #include "field/blend/alpha_sample.h"
 #include "field/program/field_program.h"
+#include "field/skeleton/second_order.h"
 
 namespace marrow {
 
@@ -19,6 +20,13 @@ class RampedField : public AlphaSource {
     const double share = (s.value - ramp_.from[0]) / (ramp_.from[1] - ramp_.from[0]);
     const double slope = share > 0 && share < 1 ? (ramp_.to[1] - ramp_.to[0]) / (ramp_.from[1] - ramp_.from[0]) : 0;
     return {.value = ramp_(s.value), .gradient = slope == 0 ? Vec3d{} : s.gradient * slope};
+  }
+
+  HessianJet second_order_at(const Vec3d& p) const override {
+    const HessianJet v = second_order_value(program_, variables_at(p));
+    const double share = (v.value - ramp_.from[0]) / (ramp_.from[1] - ramp_.from[0]);
+    if (!(share > 0 && share < 1)) return ramp_(v.value);
+    return ramp_.to[0] + (v - ramp_.from[0]) * ((ramp_.to[1] - ramp_.to[0]) / (ramp_.from[1] - ramp_.from[0]));
   }
 
   // A ramp is monotone.
