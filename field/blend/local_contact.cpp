@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "field/blend/contact.h"
@@ -130,6 +131,44 @@ AlphaSample LocalContact::unequal(double spread, const Vec3d& gradient) const {
   const double by_y = (first + t * (2 * bend + t * 3 * twist)) / step;
   return {.value = a + t * (first + t * (bend + t * twist)),
           .gradient = gradient * (by_y / ((1 + spread) * (1 + spread)))};
+}
+
+// In the variable of the table; what lies between two knots is a cubic, inside the hull of its Bernstein coefficients.
+Interval LocalContact::unequal_within(const Interval& spread) const {
+  constexpr double step = last_y / (entries - 1);
+  const auto y_of = [](double s) { return s < 1e300 ? s / (1 + s) : 1; };
+  const double begin = y_of(std::max(0.0, spread.lo)), end = y_of(std::max(0.0, spread.hi));
+  const auto sample = [&](double y) {
+    const AlphaSample a = unequal(y / (1 - y), {1, 0, 0});
+    return std::array{a.value, a.gradient.x / ((1 - y) * (1 - y))};  // d/dy = d/ds (1 + s)^2
+  };
+  if (begin >= last_y) return angle_.back();
+  Interval all(sample(begin)[0]);
+  if (end >= last_y) all = hull(all, angle_.back());
+  for (double a = begin; a < std::min(end, last_y);) {
+    const double knot = step * (std::floor(a / step + 1e-9) + 1), b = std::min({knot, end, last_y * (1 - 1e-12)});
+    if (!(b > a)) break;
+    const auto [at_a, slope_a] = sample(a);
+    const auto [at_b, slope_b] = sample(b);
+    const double third = (b - a) / 3;
+    for (const double control : {at_a, at_a + slope_a * third, at_b - slope_b * third, at_b}) all = hull(all, control);
+    a = b == knot ? b : last_y;
+  }
+  return {all.lo - 1e-9, all.hi + 1e-9};  // rounding, and the knots at which pieces begin
+}
+
+Interval LocalContact::range() const {
+  return within({0, std::numeric_limits<double>::infinity()}, {1, std::numeric_limits<double>::infinity()});
+}
+
+// Falls with the crowd beyond 2.
+Interval LocalContact::within(const Interval& spread, const Interval& crowd) const {
+  Interval alpha = contact_;
+  if (radii_) alpha += unequal_within(spread);
+  if (!density_) return alpha;
+  const auto dense = [&](double k) { return k > 2 ? dense_factor_ * (k - 2) * (k - 2) : 0; };
+  alpha = {alpha.lo + dense(crowd.hi), alpha.hi + dense(crowd.lo)};
+  return {std::max(least_, alpha.lo) - 1e-12, std::max(least_, alpha.hi) + 1e-12};
 }
 
 // crowd = (f e^(n-1))^((m-1)/(m-n)), e = near^(-1/(m-1)), m the near degree: k equal points give k.

@@ -45,6 +45,12 @@ class LocalContact {
   double contact() const { return contact_; }
 
   AlphaSample at(const Neighbourhood&) const;
+  /// How many equal skeletons would make this neighbourhood; 1 where it does not tell.
+  double crowd(const Neighbourhood& place) const { return crowd_at(place).value; }
+  /// All angles there may be, and those with a spread and a crowd within bounds. [the cubic pieces lie in the hull of
+  /// their control points]
+  Interval range() const;
+  Interval within(const Interval& spread, const Interval& crowd) const;
 
  private:
   static constexpr std::size_t entries = 17;
@@ -53,6 +59,7 @@ class LocalContact {
   void make_table();
   AlphaSample unequal(double spread, const Vec3d& gradient) const;
   AlphaSample crowd_at(const Neighbourhood&) const;
+  Interval unequal_within(const Interval& spread) const;
 
   Kernel kernel_;
   bool cavity_;

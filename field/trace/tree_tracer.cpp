@@ -17,6 +17,9 @@ namespace {
 constexpr int max_level = 6, max_level_of_leaf = 5;
 // As many as a level may have to be divided further: bounds that do not shrink would keep all of space.
 constexpr std::size_t max_branches = 50'000;
+// Of more members than this, those without operators are not divided: a ray that meets the box of one has few others
+// to meet, and a search along it takes less than cells take memory.
+constexpr std::size_t few_members = 64;
 // Neighbours overlap so that no root falls between them by rounding; the restricted trees hold a little farther.
 constexpr double overlap = 1e-9, validity = 4e-9;
 
@@ -52,38 +55,42 @@ std::optional<Branch> examined(const FieldTree& parent, const Vec3d& center, dou
 }
 
 // The cube of a box, with a little room.
-Branch root_of(const FieldTree& tree, const Box3& bounds) {
-  const Vec3d size = bounds.size();
-  return {bounds.center(), 0.5 * max_component(size) * (1 + 1e-6), tree, false};
+Branch root_of(const FieldTree& tree, const Member& member) {
+  const Vec3d center = member.bounds.center();
+  const double half = 0.5 * max_component(member.bounds.size()) * (1 + 1e-6);
+  return {center, half, restricted(tree, Box3{center, center}.padded(half * (1 + validity)), member.record), false};
 }
 
 }  // namespace
 
 Result<TreeTracer> TreeTracer::make(FieldTree tree) {
-  const Box3 bounds = surface_bounds(tree);
-  if (!bounds.empty() && !(is_finite(bounds.lower) && is_finite(bounds.upper)))
-    return failure("the surface of this field has no end; intersect it with something bounded");
-  TreeTracer made(std::move(tree), bounds);
-  if (!bounds.empty()) made.divide();
+  TreeTracer made(std::move(tree));
+  const std::vector<Member> all = members(made.tree_);
+  for (const Member& member : all) {
+    if (member.bounds.empty()) continue;
+    if (!(is_finite(member.bounds.lower) && is_finite(member.bounds.upper)))
+      return failure("the surface of this field has no end; intersect it with something bounded");
+    made.bounds_.include(member.bounds);
+    if (member.is_leaf && all.size() > few_members) made.cells_.push_back({member.bounds, member.record, {}});
+    else made.divide(member);
+  }
   return made;
 }
 
 // Level by level, so that the order of cells does not depend on threads.
-void TreeTracer::divide() {
-  std::vector<Branch> level{root_of(tree_, bounds_)};
+void TreeTracer::divide(const Member& member) {
+  std::vector<Branch> level{root_of(tree_, member)};
   for (int depth = 1; !level.empty(); ++depth) {
     const bool is_last = level.size() * 8 > max_branches;
     std::vector<std::optional<Branch>> octants(level.size() * 8);
-    tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) {
-      const Branch& b = level[i];
-      for (int octant = 0; octant < 8; ++octant)
-        octants[i * 8 + static_cast<std::size_t>(octant)] =
-            examined(b.tree, octant_center(b.center, b.half, octant), b.half / 2, depth);
+    tbb::parallel_for(std::size_t{0}, octants.size(), [&](std::size_t i) {
+      const Branch& b = level[i / 8];
+      octants[i] = examined(b.tree, octant_center(b.center, b.half, static_cast<int>(i % 8)), b.half / 2, depth);
     });
     level.clear();
     for (std::optional<Branch>& b : octants) {
       if (!b) continue;
-      if (b->is_cell || is_last) cells_.push_back({b->box(), std::move(b->tree)});
+      if (b->is_cell || is_last) cells_.push_back({b->box(), member.record, std::move(b->tree)});
       else level.push_back(*std::move(b));
     }
   }
@@ -116,24 +123,42 @@ std::optional<CellHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, b
   log.enter = t.lo;
   if (any) t.hi = std::min(t.hi, ray.t_max);
   if (!(t.lo <= t.hi)) return {};
-  const CrossingSearch search = find_crossing(c.tree, ray, t.lo, t.hi, any);
+  const CrossingSearch search = c.is_divided() ? find_crossing(c.tree, FieldTree::whole, ray, t.lo, t.hi, any)
+                                               : find_crossing(tree_, c.member, ray, t.lo, t.hi, any);
   log.evaluations += search.evaluations;
   log.undecided = std::min(log.undecided, search.undecided);
   return search.t && *search.t <= ray.t_max ? std::optional(CellHit{*search.t}) : std::nullopt;
 }
 
+// use(tree, record) of what is equal to the member at p.
+template <class Use>
+auto TreeTracer::with_field_near(const Cell& cell, const Vec3d& p, const Use& use) const {
+  const bool is_near = cell.is_divided() && cell.box.padded(0.5 * validity * cell.box.size().x).contains(p);
+  return is_near ? use(cell.tree, FieldTree::whole) : use(tree_, cell.member);
+}
+
 // Beside the surface: the shortest of growing steps after which the field is certainly below 1.
 SurfacePoint TreeTracer::surface_at(std::size_t cell, const Vec3d& position) const {
   using X = Jet<double, 3>;
-  const X f = value(tree_, Vec3<X>{X::variable(position.x, 0), X::variable(position.y, 1), X::variable(position.z, 2)});
+  const Cell& c = cells_[cell];
+  const Vec3<X> at{X::variable(position.x, 0), X::variable(position.y, 1), X::variable(position.z, 2)};
+  const X f = with_field_near(c, position,
+                              [&](const FieldTree& tree, std::uint32_t record) { return value(tree, at, record); });
   SurfacePoint out{.normal = normalize(Vec3d{-f.slope[0], -f.slope[1], -f.slope[2]}), .outside = position};
-  const double size = std::max(largest_coordinate(cells_[cell].box), cells_[cell].box.size().x);
+  const double size = std::max(largest_coordinate(c.box), c.box.size().x);
   for (double step = 4 * rounding::ulp * size; step < size; step *= 2) {
-    out.outside = position + out.normal * step;
-    const Vec3d& p = out.outside;
-    if (value(tree_, Vec3<Interval>{Interval(p.x), Interval(p.y), Interval(p.z)}).hi < 1) break;
+    const Vec3d p = out.outside = position + out.normal * step;
+    const Vec3<Interval> there{Interval(p.x), Interval(p.y), Interval(p.z)};
+    const auto enclosed = [&](const FieldTree& tree, std::uint32_t record) { return value(tree, there, record); };
+    if (with_field_near(c, p, enclosed).hi < 1) break;
   }
   return out;
+}
+
+MaterialId TreeTracer::material_at(std::size_t cell, const Vec3d& position) const {
+  return with_field_near(cells_[cell], position, [&](const FieldTree& tree, std::uint32_t record) {
+    return strongest_material(tree, position, record);
+  });
 }
 
 std::size_t TreeTracer::bytes() const {
