@@ -133,28 +133,38 @@ AlphaSample LocalContact::unequal(double spread, const Vec3d& gradient) const {
           .gradient = gradient * (by_y / ((1 + spread) * (1 + spread)))};
 }
 
-// In the variable of the table; what lies between two knots is a cubic, inside the hull of its Bernstein coefficients.
-Interval LocalContact::unequal_within(const Interval& spread) const {
+// In the variable y of the table. What lies between two knots is a cubic, inside the hull of its Bernstein
+// coefficients, whose slope is inside that of their differences.
+LocalContact::Unequal LocalContact::unequal_within(const Interval& spread) const {
   constexpr double step = last_y / (entries - 1);
   const auto y_of = [](double s) { return s < 1e300 ? s / (1 + s) : 1; };
   const double begin = y_of(std::max(0.0, spread.lo)), end = y_of(std::max(0.0, spread.hi));
+  if (begin >= last_y) return {angle_.back(), 0};
   const auto sample = [&](double y) {
     const AlphaSample a = unequal(y / (1 - y), {1, 0, 0});
     return std::array{a.value, a.gradient.x / ((1 - y) * (1 - y))};  // d/dy = d/ds (1 + s)^2
   };
-  if (begin >= last_y) return angle_.back();
-  Interval all(sample(begin)[0]);
-  if (end >= last_y) all = hull(all, angle_.back());
-  for (double a = begin; a < std::min(end, last_y);) {
+  Unequal all{Interval(sample(begin)[0]), 0};
+  if (end >= last_y) all.angle = hull(all.angle, angle_.back());
+  for (double a = begin; a < std::min(end, last_y * (1 - 1e-12));) {
     const double knot = step * (std::floor(a / step + 1e-9) + 1), b = std::min({knot, end, last_y * (1 - 1e-12)});
-    if (!(b > a)) break;
     const auto [at_a, slope_a] = sample(a);
     const auto [at_b, slope_b] = sample(b);
-    const double third = (b - a) / 3;
-    for (const double control : {at_a, at_a + slope_a * third, at_b - slope_b * third, at_b}) all = hull(all, control);
-    a = b == knot ? b : last_y;
+    const double third = (b - a) / 3, second = at_a + slope_a * third, fourth = at_b - slope_b * third;
+    for (const double control : {at_a, second, fourth, at_b}) all.angle = hull(all.angle, control);
+    for (const double slope : {slope_a, b > a ? (fourth - second) / third : 0, slope_b})
+      all.steepest = std::max(all.steepest, std::fabs(slope));
+    if (b != knot) break;
+    a = b;
   }
-  return {all.lo - 1e-9, all.hi + 1e-9};  // rounding, and the knots at which pieces begin
+  // dy/ds = (1 - y)^2; rounding, and that of the knots at which pieces begin
+  return {{all.angle.lo - 1e-9, all.angle.hi + 1e-9}, all.steepest * (1 - begin) * (1 - begin) * (1 + 1e-6) + 1e-9};
+}
+
+double LocalContact::steepest(const Interval& spread) const { return radii_ ? unequal_within(spread).steepest : 0; }
+
+double LocalContact::steepest_by_crowd(const Interval& crowd) const {
+  return density_ && crowd.hi > 2 ? 2 * std::fabs(dense_factor_) * (crowd.hi - 2) : 0;
 }
 
 Interval LocalContact::range() const {
@@ -164,7 +174,7 @@ Interval LocalContact::range() const {
 // Falls with the crowd beyond 2.
 Interval LocalContact::within(const Interval& spread, const Interval& crowd) const {
   Interval alpha = contact_;
-  if (radii_) alpha += unequal_within(spread);
+  if (radii_) alpha += unequal_within(spread).angle;
   if (!density_) return alpha;
   const auto dense = [&](double k) { return k > 2 ? dense_factor_ * (k - 2) * (k - 2) : 0; };
   alpha = {alpha.lo + dense(crowd.hi), alpha.hi + dense(crowd.lo)};

@@ -51,6 +51,9 @@ class LocalContact {
   /// their control points]
   Interval range() const;
   Interval within(const Interval& spread, const Interval& crowd) const;
+  /// Largest |d alpha / d spread| and |d alpha / d crowd| within bounds.
+  double steepest(const Interval& spread) const;
+  double steepest_by_crowd(const Interval& crowd) const;
 
  private:
   static constexpr std::size_t entries = 17;
@@ -59,7 +62,11 @@ class LocalContact {
   void make_table();
   AlphaSample unequal(double spread, const Vec3d& gradient) const;
   AlphaSample crowd_at(const Neighbourhood&) const;
-  Interval unequal_within(const Interval& spread) const;
+  struct Unequal {
+    Interval angle;
+    double steepest = 0;
+  };
+  Unequal unequal_within(const Interval& spread) const;
 
   Kernel kernel_;
   bool cavity_;

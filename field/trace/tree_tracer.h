@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -46,8 +47,8 @@ class TreeTracer {
   struct Cell {
     Box3 box;
     std::uint32_t member;  ///< record of the whole tree
-    FieldTree tree;        ///< equal to the member in the box and a little beyond; without nodes: the member itself
-    bool is_divided() const { return tree.nodes() != nullptr; }
+    /// Equal to the member in the box and a little beyond; may serve several cells. Null: the member itself.
+    std::shared_ptr<const FieldTree> tree;
   };
   explicit TreeTracer(FieldTree tree) : tree_(std::move(tree)) {}
   void divide(const Member&);
