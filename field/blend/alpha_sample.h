@@ -25,6 +25,10 @@ class AlphaSource {
   virtual HessianJet second_order_at(const Vec3d& p) const = 0;
   /// All angles in a box.
   virtual Interval bounds(const Box3&) const = 0;
+  /// All their gradients.
+  virtual Vec3<Interval> slopes(const Box3&) const {
+    return {Interval::everything(), Interval::everything(), Interval::everything()};
+  }
 };
 
 }  // namespace marrow

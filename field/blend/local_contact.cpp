@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "field/blend/contact.h"
@@ -130,6 +131,56 @@ X LocalContact::unequal(const X& spread) const {
   return a + t * (first + t * (bend + t * twist));
 }
 
+// In the variable y of the table. What lies between two knots is a cubic, inside the hull of its Bernstein
+// coefficients, whose slope is inside that of their differences.
+LocalContact::Unequal LocalContact::unequal_within(const Interval& spread) const {
+  constexpr double step = last_y / (entries - 1);
+  const auto y_of = [](double s) { return s < 1e300 ? s / (1 + s) : 1; };
+  const double begin = y_of(std::max(0.0, spread.lo)), end = y_of(std::max(0.0, spread.hi));
+  if (begin >= last_y) return {angle_.back(), 0};
+  const auto sample = [&](double y) {
+    Jet<double, 1> spread_here(y / (1 - y));
+    spread_here.slope = {1};
+    const Jet<double, 1> a = unequal(spread_here);
+    return std::array{a.value, a.slope[0] / ((1 - y) * (1 - y))};  // d/dy = d/ds (1 + s)^2
+  };
+  Unequal all{Interval(sample(begin)[0]), 0};
+  if (end >= last_y) all.angle = hull(all.angle, angle_.back());
+  for (double a = begin; a < std::min(end, last_y * (1 - 1e-12));) {
+    const double knot = step * (std::floor(a / step + 1e-9) + 1), b = std::min({knot, end, last_y * (1 - 1e-12)});
+    const auto [at_a, slope_a] = sample(a);
+    const auto [at_b, slope_b] = sample(b);
+    const double third = (b - a) / 3, second = at_a + slope_a * third, fourth = at_b - slope_b * third;
+    for (const double control : {at_a, second, fourth, at_b}) all.angle = hull(all.angle, control);
+    for (const double slope : {slope_a, b > a ? (fourth - second) / third : 0, slope_b})
+      all.steepest = std::max(all.steepest, std::fabs(slope));
+    if (b != knot) break;
+    a = b;
+  }
+  // dy/ds = (1 - y)^2; rounding, and that of the knots at which pieces begin
+  return {{all.angle.lo - 1e-9, all.angle.hi + 1e-9}, all.steepest * (1 - begin) * (1 - begin) * (1 + 1e-6) + 1e-9};
+}
+
+double LocalContact::steepest(const Interval& spread) const { return radii_ ? unequal_within(spread).steepest : 0; }
+
+double LocalContact::steepest_by_crowd(const Interval& crowd) const {
+  return density_ && crowd.hi > 2 ? 2 * std::fabs(dense_factor_) * (crowd.hi - 2) : 0;
+}
+
+Interval LocalContact::range() const {
+  return within({0, std::numeric_limits<double>::infinity()}, {1, std::numeric_limits<double>::infinity()});
+}
+
+// Falls with the crowd beyond 2.
+Interval LocalContact::within(const Interval& spread, const Interval& crowd) const {
+  Interval alpha = contact_;
+  if (radii_) alpha += unequal_within(spread).angle;
+  if (!density_) return alpha;
+  const auto dense = [&](double k) { return k > 2 ? dense_factor_ * (k - 2) * (k - 2) : 0; };
+  alpha = {alpha.lo + dense(crowd.hi), alpha.hi + dense(crowd.lo)};
+  return {std::max(least_, alpha.lo) - 1e-12, std::max(least_, alpha.hi) + 1e-12};
+}
+
 // crowd = (f e^(n-1))^((m-1)/(m-n)), e = near^(-1/(m-1)), m the near degree: k equal points give k.
 template <Number X>
 X LocalContact::crowd_at(const X& field, const X& near_field) const {
@@ -148,6 +199,8 @@ X LocalContact::crowd_at(const X& field, const X& near_field) const {
     return crowd;
   }
 }
+
+double LocalContact::crowd(const Neighbourhood& place) const { return crowd_at(place.field, place.near_field); }
 
 template <Number X>
 X LocalContact::angle(const X& field, const X& spread, const X& near_field) const {

@@ -51,6 +51,15 @@ class LocalContact {
   AlphaSample at(const Neighbourhood&) const;
   /// The same with second derivatives.
   HessianJet at(const HessianJet& field, const HessianJet& spread, const HessianJet& near_field) const;
+  /// How many equal skeletons would make this neighbourhood; 1 where it does not tell.
+  double crowd(const Neighbourhood&) const;
+  /// All angles there may be, and those with a spread and a crowd within bounds. [the cubic pieces lie in the hull of
+  /// their control points]
+  Interval range() const;
+  Interval within(const Interval& spread, const Interval& crowd) const;
+  /// Largest |d alpha / d spread| and |d alpha / d crowd| within bounds.
+  double steepest(const Interval& spread) const;
+  double steepest_by_crowd(const Interval& crowd) const;
 
  private:
   static constexpr std::size_t entries = 17;
@@ -63,6 +72,11 @@ class LocalContact {
   X crowd_at(const X& field, const X& near_field) const;
   template <Number X>
   X angle(const X& field, const X& spread, const X& near_field) const;
+  struct Unequal {
+    Interval angle;
+    double steepest = 0;
+  };
+  Unequal unequal_within(const Interval& spread) const;
 
   Kernel kernel_;
   bool cavity_;

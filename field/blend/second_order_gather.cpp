@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "field/blend/local_contact.h"
 #include "field/blend/primitive_visit.h"
 #include "field/math/elementary.h"
 

@@ -33,19 +33,20 @@ thread_local bool BorrowedMachine<X>::is_taken_ = false;
 }  // namespace
 
 template <Number X>
-X value(const FieldTree& tree, const Vec3<X>& p) {
+X value(const FieldTree& tree, const Vec3<X>& p, std::uint32_t below) {
   BorrowedMachine<X> machine;
-  return machine.get().run(tree, p, X(0.0), [&](std::uint32_t record, const Vec3<X>& at, std::span<const X> children) {
-    return tree::value_of_node(tree.node(tree.records()[record]), at, children);
-  });
+  return machine.get().run(tree, below, p, X(0.0),
+                           [&](std::uint32_t record, const Vec3<X>& at, std::span<const X> children) {
+                             return tree::value_of_node(tree.node(tree.records()[record]), at, children);
+                           });
 }
 
-template double value(const FieldTree&, const Vec3<double>&);
-template Jet<double, 3> value(const FieldTree&, const Vec3<Jet<double, 3>>&);
-template HessianJet value(const FieldTree&, const Vec3<HessianJet>&);
-template Interval value(const FieldTree&, const Vec3<Interval>&);
-template Jet<Interval, 1> value(const FieldTree&, const Vec3<Jet<Interval, 1>>&);
-template Jet<Interval, 3> value(const FieldTree&, const Vec3<Jet<Interval, 3>>&);
+template double value(const FieldTree&, const Vec3<double>&, std::uint32_t);
+template Jet<double, 3> value(const FieldTree&, const Vec3<Jet<double, 3>>&, std::uint32_t);
+template HessianJet value(const FieldTree&, const Vec3<HessianJet>&, std::uint32_t);
+template Interval value(const FieldTree&, const Vec3<Interval>&, std::uint32_t);
+template Jet<Interval, 1> value(const FieldTree&, const Vec3<Jet<Interval, 1>>&, std::uint32_t);
+template Jet<Interval, 3> value(const FieldTree&, const Vec3<Jet<Interval, 3>>&, std::uint32_t);
 
 namespace tree {
 

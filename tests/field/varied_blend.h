@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "field/blend/blend_field.h"
+#include "field/blend/local_contact.h"
 #include "field/skeleton/second_order.h"
 #include "tests/field/random.h"
 
