@@ -37,7 +37,7 @@ class EveryKind : public testing::Test {
   }
 };
 // Those of scenes, and what compile() makes of placements and unions; blends have tests of their own.
-using Kinds = tree::Extended<AnyNode, AffineWarp, CrispUnion>::type;
+using Kinds = tree::Extended<AnyNode, PointLeaf, AffineWarp, CrispUnion>::type;
 TYPED_TEST_SUITE(EveryKind, KindsOf<Kinds>::type, NameOfKind);
 
 TYPED_TEST(EveryKind, EnclosuresHoldValuesAndSlopes) {

@@ -107,6 +107,7 @@ template <class Kind>
 constexpr NodeInfo info_of_kind() {
   if constexpr (std::same_as<Kind, AffineWarp>) return {"placement", {}, 1, 1};
   else if constexpr (std::same_as<Kind, CrispUnion>) return {"union", {}, 1, any_number_of_children};
+  else if constexpr (std::same_as<Kind, PointLeaf>) return {"lone point", {}, 0, 0};
   else return Kind::info;
 }
 
@@ -127,6 +128,7 @@ template <class Kind>
 Kind random_node(std::size_t children, Random& random) {
   if constexpr (std::same_as<Kind, AffineWarp>) return random_placement(random);
   if constexpr (std::same_as<Kind, CrispUnion>) return {};
+  if constexpr (std::same_as<Kind, PointLeaf>) return {random.vector(1), random.between(0.1, 1)};
   for (int trial = 0; trial < 1000; ++trial) {
     Kind node;
     if constexpr (requires { Kind::info; }) Kind::keys(RandomParameters<Kind>(node, children, random));
