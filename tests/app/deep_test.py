@@ -10,7 +10,7 @@ import unittest
 
 from marrow_program import PROGRAM, ProgramTest
 
-COUNT = int(os.environ.get("MARROW_DEEP_COUNT", "20000"))
+COUNT = int(os.environ.get("MARROW_DEEP_COUNT", "10000"))
 STACK = 256 * 1024
 HEAD = """marrow: 1
 camera: {from: [0, 0, 5], to: [0, 0, 0], fov: 40}
@@ -25,10 +25,13 @@ def balls(kind):
     """COUNT small balls in a cube, as the scene format writes them, from a fixed seed."""
     numbers = random.Random(1)
     radius = round(0.6 * COUNT ** (-1 / 3), 5)
-    where = "center" if kind == "sphere" else "at"
     for _ in range(COUNT):
         x, y, z = (round(numbers.uniform(-1, 1), 4) for _ in range(3))
-        yield f"{{{kind}: {{{where}: [{x}, {y}, {z}], radius: {radius}}}}}"
+        if kind == "point":
+            yield f"{{point: {{at: [{x}, {y}, {z}], radius: {radius}}}}}"
+        else:
+            yield (f"{{sphere: {{center: [{x}, {y}, {z}], radius: {radius}, "
+                   f"potential: {{wyvill: {{range: {radius}}}}}}}}}")
 
 
 def wide(operator, kind):
