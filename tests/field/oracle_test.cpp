@@ -13,6 +13,7 @@
 #include "field/blend/contact.h"
 #include "field/blend/correction.h"
 #include "field/skeleton/skeletons.h"
+#include "tests/field/oracle_operator.h"
 #include "tests/field/random.h"
 
 namespace marrow {

@@ -115,7 +115,7 @@ std::vector<Subject> random_subjects(Random& random, int round) {
 TEST(SecondOrder, OfEverySkeletonAndKernel) {
   Random random(701);
   int checked = 0, rough = 0;
-  for (int round = 0; round < 240; ++round)
+  for (int round = 0; round < 120; ++round)
     for (const Subject& subject : random_subjects(random, round)) {
       SCOPED_TRACE(subject.name + " in round " + std::to_string(round));
       const Vec3d p = random.vector(2);
@@ -145,7 +145,7 @@ TEST(SecondOrder, OfEverySkeletonAndKernel) {
                jets.si[c]);
     }
   std::cout << "  " << checked << " Hessians, " << rough << " at kinks\n";
-  EXPECT_GT(checked, 3000);
+  EXPECT_GT(checked, 2000);
   EXPECT_LT(rough, checked / 5);
 }
 
@@ -170,7 +170,7 @@ TEST(SecondOrder, OfCorrectedFields) {
   Random random(703);
   int checked = 0, rough = 0, in_cavity = 0;
   double worst = 0;
-  for (int round = 0; round < 3000; ++round) {
+  for (int round = 0; round < 1000; ++round) {
     SCOPED_TRACE("round " + std::to_string(round));
     const BlendField blend = varied_blend(random, round);
     const Vec3d p = round % 4 == 3 ? random.vector(0.3) : random.vector(2);
@@ -197,8 +197,8 @@ TEST(SecondOrder, OfCorrectedFields) {
   }
   std::cout << "  " << checked << " Hessians, " << in_cavity << " in the cavity branch, " << rough
             << " at kinks; worst relative difference " << worst << '\n';
-  EXPECT_GT(checked, 1500);
-  EXPECT_GT(in_cavity, 100);
+  EXPECT_GT(checked, 600);
+  EXPECT_GT(in_cavity, 60);
   EXPECT_LT(rough, checked / 8);
 }
 
