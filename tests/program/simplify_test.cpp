@@ -16,8 +16,9 @@ namespace {
 using test::Random;
 
 FieldNodeId general(FieldDescription& field, AnyNode node, std::vector<FieldNodeId> of) {
-  return field.add(
-      {.what = GeneralNode{.node = boxed(std::move(node)), .of = std::move(of), .material = {}}, .where = {}});
+  const FieldNode placed{.what = GeneralNode{.node = boxed(std::move(node)), .of = std::move(of), .material = {}},
+                         .where = {}};
+  return field.add(placed);
 }
 
 Sphere random_ball(Random& random) {
