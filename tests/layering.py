@@ -16,7 +16,7 @@ ARROWS = {
     "field/number": ["field/base", "field/math"],
     "field/description": ["field/base", "field/math"],
     "field/kernel": ["field/base", "field/math", "field/description"],
-    "field/skeleton": ["field/base", "field/math", "field/description", "field/kernel"],
+    "field/skeleton": ["field/base", "field/math", "field/number", "field/description", "field/kernel"],
     "field/blend": ["field/base", "field/math", "field/number", "field/description", "field/kernel",
                     "field/skeleton"],
     "field/tree": ["field/base", "field/math", "field/number", "field/description", "field/kernel", "field/skeleton",

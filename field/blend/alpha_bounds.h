@@ -5,7 +5,11 @@
 
 namespace marrow {
 
-/// All angles that the blend may use in the box of `sum`.
-Interval alpha_bounds(const BlendField&, const SumBounds& sum, const Box3&);
+struct AngleBounds {
+  Interval value;           ///< radians
+  Vec3<Interval> gradient;  ///< everything where no bound is known
+};
+/// All angles that the blend may use in the box of `sum`, and their gradients.
+AngleBounds alpha_bounds(const BlendField&, const SumBounds& sum, const Box3&);
 
 }  // namespace marrow

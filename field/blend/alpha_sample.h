@@ -3,6 +3,7 @@
 
 #include "field/math/box3.h"
 #include "field/number/interval.h"
+#include "field/number/jet.h"
 
 namespace marrow {
 
@@ -20,8 +21,14 @@ class AlphaSource {
   AlphaSource& operator=(const AlphaSource&) = delete;
   virtual ~AlphaSource() = default;
   virtual AlphaSample at(const Vec3d& p) const = 0;
+  /// With its second derivatives by p.
+  virtual HessianJet second_order_at(const Vec3d& p) const = 0;
   /// All angles in a box.
   virtual Interval bounds(const Box3&) const = 0;
+  /// All their gradients.
+  virtual Vec3<Interval> slopes(const Box3&) const {
+    return {Interval::everything(), Interval::everything(), Interval::everything()};
+  }
 };
 
 }  // namespace marrow

@@ -19,14 +19,15 @@ Interval corrected(const BlendField& blend, const Interval& alpha, const Interva
   return alpha.lo == alpha.hi ? with(alpha.lo) : hull(with(alpha.lo), with(alpha.hi));
 }
 
-// grad C = dC/df grad f + dC/dG grad G with dG/dp_j = S . dS/dp_j / G, where |S_i / G| <= 1.
-Vec3<Interval> gradient_of(const SumBounds& sum, const PartialBounds& by, const Vec3<Interval>& S, const Interval& G) {
+// grad C = dC/df grad f + dC/dG grad G + dC/dalpha grad alpha with dG/dp_j = S . dS/dp_j / G, where |S_i / G| <= 1.
+Vec3<Interval> gradient_of(const SumBounds& sum, const PartialBounds& by, const Vec3<Interval>& S, const Interval& G,
+                           const Vec3<Interval>& alpha_gradient) {
   const Vec3<Interval> f_gradient = sum.gradient();
   Vec3<Interval> gradient;
   for (std::size_t j = 0; j < 3; ++j) {
     Interval G_slope;
     for (std::size_t i = 0; i < 3; ++i) G_slope += clamped(S[i] / G, {-1, 1}) * sum.J(i, j);
-    gradient[j] = by.df * f_gradient[j] + by.dG * G_slope;
+    gradient[j] = by.df * f_gradient[j] + by.dG * G_slope + by.dalpha * alpha_gradient[j];
   }
   return gradient;
 }
@@ -36,7 +37,8 @@ Vec3<Interval> gradient_of(const SumBounds& sum, const PartialBounds& by, const 
 BlendBounds blend_bounds(const BlendField& blend, const Box3& box) {
   if (!is_finite(box.center()) || !is_finite(box.size())) return {{0, inf}, unknown};
   const SumBounds sum(blend, box);
-  const Interval alpha = alpha_bounds(blend, sum, box);
+  const AngleBounds angle = alpha_bounds(blend, sum, box);
+  const Interval& alpha = angle.value;
   const Interval f = sum.f();
   if (sum.unbounded()) {
     // Below alpha = 0 nothing is known of C without G.
@@ -46,8 +48,9 @@ BlendBounds blend_bounds(const BlendField& blend, const Box3& box) {
   const Vec3<Interval> S = sum.S();
   const Interval G = sqrt(square(S.x) + square(S.y) + square(S.z));
   BlendBounds b{.value = corrected(blend, alpha, f, G), .gradient = unknown};
-  if (blend.alpha_varies() || blend.alpha < 0) return b;
-  b.gradient = gradient_of(sum, partial_bounds(blend, correction_of(blend), b.value, f, G), S, G);
+  if (alpha.lo < 0) return b;
+  const Correction least({blend.kernel, blend.degree, blend.kernel_shape}, alpha.lo, blend.cavity, blend.projection);
+  b.gradient = gradient_of(sum, partial_bounds(blend, least, alpha, b.value, f, G), S, G, angle.gradient);
   return b;
 }
 

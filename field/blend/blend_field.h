@@ -12,12 +12,13 @@
 #include "field/blend/alpha_sample.h"
 #include "field/blend/correction.h"
 #include "field/blend/directional_alpha.h"
-#include "field/blend/local_contact.h"
 #include "field/description/field_node.h"
 #include "field/math/box3.h"
 #include "field/skeleton/skeleton_sample.h"
 
 namespace marrow {
+
+class LocalContact;
 
 /// Primitives of one kind and the material and angle of each. Invariant: materials is empty (all are the object's) or
 /// parallel to skeletons; alphas is parallel to skeletons in a blend with `alpha_per_skeleton`, else empty; alphas_to

@@ -51,7 +51,8 @@ BoundedCorrection::Slopes BoundedCorrection::projected_slopes(double f, double G
   const double value = projected(f, G);
   if (projection_ == Projection::Exact || !(G < curve_.at(f))) {
     const double slope = curve_.slope(value), sum = slope * cos_ + sin_;
-    if (sum == 0 || value >= std::max(f, curve_.top_field())) return {value, f > curve_.top_field() ? 1.0 : 0.0, 0, 0};
+    if (value >= std::max(f, curve_.top_field())) return {value, f > curve_.top_field() ? 1.0 : 0.0, 0, 0};
+    if (sum == 0) return {value, 0, 0, 0};  // beyond the top with alpha = 0: level
     const double dalpha = ((f - value) * cos_ + (curve_.at(value) - G) * sin_) / sum;
     return {value, sin_ / sum, cos_ / sum, dalpha};
   }

@@ -40,6 +40,8 @@ class Correction {
   bool cavity() const { return cavity_; }
   Projection projection() const { return projection_; }
   bool is_sum() const { return is_sum_; }
+  /// Whether C(f, G) = f for every G: pi/2, and where powers of f leave the range of double.
+  bool is_trivial(double f) const { return trivial(f).has_value(); }
   /// Of a kernel that is finite on its skeletons; else nothing.
   const std::optional<BoundedCorrection>& bounded() const { return bounded_; }
 

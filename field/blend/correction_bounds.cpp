@@ -27,23 +27,41 @@ PartialBounds coarse_partials(const ReferenceCurve& curve, const Interval& value
   return {{0, 1}, {0, value.lo > 0 ? rounding::up(1 / curve.slope(value.lo), 8) : inf}};
 }
 
-// The partial derivatives of the projection onto the chord.   [field-maths 4.5]
-PartialBounds chord_partials(const ReferenceCurve& curve, const Correction& c, const Interval& f, const Interval& x_H) {
-  const double sine = sin(c.alpha()), cosine = cos(c.alpha());
-  const Interval s = chord_slope(curve, f, x_H), sc = s * Interval(cosine), den = sc + Interval(sine);
-  const Interval psi = sc / den, ps = Interval(cosine * sine) / square(den);
+// Sine and cosine of angles from 0 to pi/2.
+struct Angles {
+  Interval sine, cosine;
+};
+Angles angles_of(const Interval& alpha) {
+  if (alpha.lo == alpha.hi) return {Interval(sin(alpha.lo)), Interval(cos(alpha.lo))};
+  return {{rounding::down(sin(alpha.lo), 2), rounding::up(sin(alpha.hi), 2)},
+          {std::max(0.0, rounding::down(cos(alpha.hi), 2)), rounding::up(cos(alpha.lo), 2)}};
+}
+
+// The partial derivatives of the projection onto the chord. The share psi falls with the angle and rises with the slope
+// of the chord. Where C is cut at 0, that by the angle is 0.   [field-maths 4.5]
+PartialBounds chord_partials(const ReferenceCurve& curve, const Angles& angle, const Interval& f, const Interval& x_H) {
+  const auto& [sine, cosine] = angle;
+  const Interval s = chord_slope(curve, f, x_H), den = s * cosine + sine;
+  const auto share = [](double slope, double c, double w) { return slope * c / (slope * c + w); };
+  const Interval psi{rounding::down(share(s.lo, cosine.lo, sine.hi), 4),
+                     rounding::up(share(s.hi, cosine.hi, sine.lo), 4)};
+  const Interval ps = cosine * sine / square(den);
   const auto slope = [&](const Interval& x) { return Interval{curve.slope(x.lo), curve.slope(x.hi)}; };
   const Interval df = Interval(1) - psi - ps * (slope(f) - s);
   const Interval dx = psi - ps * (s - slope(x_H));
-  return {{std::max(0.0, df.lo), df.hi}, Interval{std::max(0.0, dx.lo), dx.hi} / slope(x_H)};
+  return {{std::max(0.0, df.lo), df.hi},
+          Interval{std::max(0.0, dx.lo), dx.hi} / slope(x_H),
+          hull(s * (f - x_H) / square(den), Interval(0))};
 }
 
-// The root of g(x) cos + x sin = G cos + f sin moves by sin / (g' cos + sin) with f, by cos / (g' cos + sin) with G.
-PartialBounds exact_partials(const ReferenceCurve& curve, const Correction& c, const Interval& value) {
-  const double sine = sin(c.alpha()), cosine = cos(c.alpha());
+// The root of g(x) cos + x sin = G cos + f sin moves by sin / (g' cos + sin) with f, by cos / (g' cos + sin) with G,
+// and with the angle by ((f - x) cos + (g - G) sin) / (g' cos + sin).
+PartialBounds exact_partials(const ReferenceCurve& curve, const Angles& angle, const Interval& value, const Interval& f,
+                             const Interval& G) {
   const Interval slope{curve.slope(value.lo) * (1 - 1e-9), curve.slope(value.hi) * (1 + 1e-9)};
-  const Interval den = slope * Interval(cosine) + Interval(sine);
-  return {Interval(sine) / den, Interval(cosine) / den};
+  const Interval at{curve.at(value.lo) * (1 - 1e-12), curve.at(value.hi) * (1 + 1e-12)};
+  const Interval den = slope * angle.cosine + angle.sine;
+  return {angle.sine / den, angle.cosine / den, ((f - value) * angle.cosine + (at - G) * angle.sine) / den};
 }
 
 // Behind the critical point the corrected value is that of D: only where c = G r^n / (2 (n-1)) < 1 / sqrt(n+1).
@@ -56,16 +74,17 @@ bool may_be_behind_critical_point(const Correction& c, const Interval& f, const 
 
 }  // namespace
 
-PartialBounds partial_bounds(const BlendField& blend, const Correction& c, const Interval& value, const Interval& f,
-                             const Interval& G) {
-  if (c.is_sum()) return {{1, 1}, {0, 0}};
+PartialBounds partial_bounds(const BlendField& blend, const Correction& c, const Interval& alpha, const Interval& value,
+                             const Interval& f, const Interval& G) {
+  if (c.is_sum()) return {{1, 1}, {0, 0}, {0, 0}};
   if (blend.kernel != KernelFamily::Inverse) return {Interval::everything(), Interval::everything()};
   const ReferenceCurve curve(blend.degree);
   if (!(f.lo > 0 && G.lo > 0) || may_be_behind_critical_point(c, f, G))
     return c.cavity() ? coarse_partials(curve, value) : PartialBounds{Interval::everything(), Interval::everything()};
-  if (c.projection() == Projection::Exact) return exact_partials(curve, c, value);
+  const Angles angle = angles_of(alpha);
+  if (c.projection() == Projection::Exact) return exact_partials(curve, angle, value, f, G);
   const Interval x_H{curve.inverse(G.lo) * (1 - 1e-12), curve.inverse(G.hi) * (1 + 1e-12)};
-  return chord_partials(curve, c, f, x_H);
+  return chord_partials(curve, angle, f, x_H);
 }
 
 // For alpha >= 0 C is isotone in both.   [tracing 3.3]

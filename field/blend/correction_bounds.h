@@ -11,9 +11,11 @@ Interval correction_bounds(const Correction&, const Interval& f, const Interval&
 
 struct PartialBounds {
   Interval df, dG;
+  Interval dalpha = Interval::everything();
 };
-/// dC/df and dC/dG there; `value` is what correction_bounds() gave. Everything where no bound is known.
-PartialBounds partial_bounds(const BlendField&, const Correction&, const Interval& value, const Interval& f,
-                             const Interval& G);
+/// dC/df, dC/dG and dC/dalpha there, for all angles of `alpha`, whose least is that of the correction and not below 0;
+/// `value` is what correction_bounds() gave. Everything where no bound is known.
+PartialBounds partial_bounds(const BlendField&, const Correction&, const Interval& alpha, const Interval& value,
+                             const Interval& f, const Interval& G);
 
 }  // namespace marrow

@@ -3,17 +3,18 @@
 
 #include "field/blend/blend_field.h"
 #include "field/math/matrix3.h"
+#include "field/number/jet.h"
 
 namespace marrow {
 
-/// The Hessian of the plain sum f. From the formulas of points, and of segments and surfaces of constant radius (there
-/// it is the Jacobian of grad_S f over the radius); of segments of linear radius from the same integral; of all others
-/// (linear radius on arcs and triangles, the distance model, Cani and Hornus) by differences of their gradients, to
-/// 1e-8. 0 on a skeleton.
+/// The Hessian of the plain sum f, from the second derivatives of every skeleton in closed form, or under its integral
+/// (field/skeleton/second_order.h). 0 on a skeleton.
 Matrix3 sum_hessian(const BlendField&, const Vec3d& p);
 
-/// The Hessian of the corrected field, by differences of its gradient in closed form, to some 1e-8; of no meaning where
-/// the gradient has a kink (where the branch of the cavity begins, for the paper's projection).
+/// The corrected field with its gradient and Hessian, in closed form: for every skeleton, kernel, projection and rule
+/// of the angle. Where the correction has a kink (where the branch of the cavity begins, for the paper's projection)
+/// the Hessian is that of one side. On a skeleton +infinity and 0.
+HessianJet second_order_corrected(const BlendField&, const Vec3d& p);
 Matrix3 corrected_hessian(const BlendField&, const Vec3d& p);
 
 /// Of the level surface through a point, from the gradient and the Hessian there, in 1/length and 1/length^2. A body is

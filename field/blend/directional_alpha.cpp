@@ -4,36 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include "field/blend/direction_tensor.h"
+
 namespace marrow {
 namespace {
-
-constexpr int power = 8;
-
-struct Exponents {
-  std::size_t i, j, k;
-  double count;  // 8! / (i! j! k!)
-};
-
-constexpr auto exponents = [] {
-  std::array<double, power + 1> factorial{1};
-  for (std::size_t i = 1; i <= power; ++i) factorial[i] = factorial[i - 1] * static_cast<double>(i);
-  std::array<Exponents, DirectionTensor::size> all{};
-  std::size_t at = 0;
-  for (std::size_t i = 0; i <= power; ++i)
-    for (std::size_t j = 0; i + j <= power; ++j) {
-      const std::size_t k = power - i - j;
-      all[at++] = {i, j, k, factorial[power] / (factorial[i] * factorial[j] * factorial[k])};
-    }
-  return all;
-}();
-
-using Powers = std::array<double, power + 1>;
-Powers powers_of(double x) {
-  Powers all;
-  all[0] = 1;
-  for (std::size_t i = 1; i <= power; ++i) all[i] = all[i - 1] * x;
-  return all;
-}
 
 // A strand made ready: u of length 1 (or 0), A and B of its bounds.
 struct Hair {
@@ -66,7 +40,7 @@ class Side {
   }
 
  private:
-  DirectionTensor plain_, spans_;
+  DirectionTensor<double> plain_, spans_;
   double field_ = 0, least_ = 0;
 };
 
@@ -91,33 +65,6 @@ AlphaSample mean_of_most(std::span<const Strand> strands) {
 
 }  // namespace
 
-void DirectionTensor::add(double weight, const Vec3d& u) {
-  const Powers x = powers_of(u.x), y = powers_of(u.y), z = powers_of(u.z);
-  for (std::size_t b = 0; b < size; ++b)
-    components_[b] += weight * (x[exponents[b].i] * y[exponents[b].j] * z[exponents[b].k]);
-}
-
-double DirectionTensor::along(const Vec3d& v) const {
-  const Powers x = powers_of(v.x), y = powers_of(v.y), z = powers_of(v.z);
-  double sum = 0;
-  for (std::size_t b = 0; b < size; ++b)
-    sum += exponents[b].count * components_[b] * (x[exponents[b].i] * y[exponents[b].j] * z[exponents[b].k]);
-  return sum;
-}
-
-Vec3d DirectionTensor::slope_along(const Vec3d& v) const {
-  const Powers x = powers_of(v.x), y = powers_of(v.y), z = powers_of(v.z);
-  Vec3d sum;
-  for (std::size_t b = 0; b < size; ++b) {
-    const auto [i, j, k, count] = exponents[b];
-    const double weight = count * components_[b];
-    if (i > 0) sum.x += weight * static_cast<double>(i) * (x[i - 1] * y[j] * z[k]);
-    if (j > 0) sum.y += weight * static_cast<double>(j) * (x[i] * y[j - 1] * z[k]);
-    if (k > 0) sum.z += weight * static_cast<double>(k) * (x[i] * y[j] * z[k - 1]);
-  }
-  return sum;
-}
-
 AlphaSample directional_alpha(std::span<const Strand> strands, bool with_gradient) {
   std::vector<Hair> hairs;
   hairs.reserve(strands.size());
@@ -141,6 +88,30 @@ AlphaSample directional_alpha(std::span<const Strand> strands, bool with_gradien
   }
   alpha.gradient = (numerator_slope - denominator_slope * alpha.value) / denominator;
   return alpha;
+}
+
+// One sweep: derivatives come with the numbers.
+HessianJet directional_alpha(std::span<const SecondOrderStrand> strands) {
+  DirectionTensor<HessianJet> plain, spans;
+  HessianJet numerator, denominator, field_before, least_before;
+  for (const SecondOrderStrand& s : strands) {
+    const double span = s.bounds.most - s.bounds.least, least = s.bounds.least;
+    const HessianJet size = length(s.direction);
+    const bool has_direction = size.value > 0 && std::isfinite(size.value);
+    const Vec3<HessianJet> u = has_direction ? s.direction / size : Vec3<HessianJet>{};
+    numerator += s.field * (span * plain.along(u) + spans.along(u) + least * field_before + least_before);
+    denominator += 2.0 * s.field * field_before;
+    plain.add(s.field, u);
+    spans.add(s.field * span, u);
+    field_before += s.field;
+    least_before += s.field * least;
+  }
+  if (denominator.value > 0) return numerator / denominator;
+  std::vector<Strand> plain_strands;
+  for (const SecondOrderStrand& s : strands)
+    plain_strands.push_back(
+        {.field = s.field.value, .field_gradient = {}, .direction = {}, .direction_jacobian = {}, .bounds = s.bounds});
+  return mean_of_most(plain_strands).value;
 }
 
 }  // namespace marrow

@@ -8,6 +8,7 @@
 #include "field/blend/alpha_sample.h"
 #include "field/math/matrix3.h"
 #include "field/math/vec3.h"
+#include "field/number/functions.h"
 
 namespace marrow {
 
@@ -35,18 +36,12 @@ struct Strand {
 /// over the strands before, so that nothing cancels (error 1e-15).
 AlphaSample directional_alpha(std::span<const Strand>, bool with_gradient);
 
-/// Sums of w u^8, as the 45 components w u_x^i u_y^j u_z^k, i + j + k = 8.
-class DirectionTensor {
- public:
-  static constexpr std::size_t size = 45;
-  void add(double weight, const Vec3d& u);
-  /// sum w (u . v)^8
-  double along(const Vec3d& v) const;
-  /// its gradient by v
-  Vec3d slope_along(const Vec3d& v) const;
-
- private:
-  std::array<double, size> components_{};
+/// The same strands over numbers with second derivatives.
+struct SecondOrderStrand {
+  HessianJet field;
+  Vec3<HessianJet> direction;  ///< of any length; 0: none
+  DirectionBounds bounds;
 };
+HessianJet directional_alpha(std::span<const SecondOrderStrand>);
 
 }  // namespace marrow

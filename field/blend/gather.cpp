@@ -87,11 +87,6 @@ Gathered by_direction(const BlendField& blend, const Vec3d& p) {
   return all;
 }
 
-double mean_radius(const PointSkeleton& s) { return s.radius; }
-double mean_radius(const SegmentSkeleton& s) { return std::sqrt(s.radius_from) * std::sqrt(s.radius_to); }
-double mean_radius(const ArcSkeleton& s) { return std::sqrt(s.radius_from) * std::sqrt(s.radius_to); }
-double mean_radius(const TriangleSkeleton& s) { return (s.radii[0] + s.radii[1] + s.radii[2]) / 3; }
-
 // Sums of f_i, f_i l_i and f_i l_i^2, with l_i the logarithm of a radius over that of the first primitive.
 class Spread {
  public:
@@ -128,24 +123,29 @@ SkeletonSample near_field_of(const auto& skeleton, const Vec3d& p) {
 }
 
 template <Derivatives Order>
-Gathered by_local_contact(const BlendField& blend, const Vec3d& p) {
-  Gathered all;
+Neighbourhood told(const BlendField& blend, const Vec3d& p, SkeletonSample& sum) {
   Spread spread;
   SkeletonSample near;
   const LocalContact& rule = *blend.local_contact;
   for_each_primitive<Order>(blend, p, [&](const SkeletonSample& s, const auto& list, std::size_t i) {
-    all.sum += s;
+    sum += s;
     if (rule.adapts_to_radii()) spread.add(s, mean_radius(list.skeletons[i]));
     if (rule.adapts_to_density()) near += near_field_of(list.skeletons[i], p);
   });
-  if (!is_usable(all.sum)) return all;
-  Neighbourhood place{.field = all.sum.value,
-                      .field_gradient = all.sum.gradient,
+  Neighbourhood place{.field = sum.value,
+                      .field_gradient = sum.gradient,
                       .spread_gradient = {},
                       .near_field = near.value,
                       .near_gradient = near.gradient};
-  if (rule.adapts_to_radii()) spread.tell(all.sum, place);
-  all.alpha = rule.at(place);
+  if (rule.adapts_to_radii() && is_usable(sum)) spread.tell(sum, place);
+  return place;
+}
+
+template <Derivatives Order>
+Gathered by_local_contact(const BlendField& blend, const Vec3d& p) {
+  Gathered all;
+  const Neighbourhood place = told<Order>(blend, p, all.sum);
+  if (is_usable(all.sum)) all.alpha = blend.local_contact->at(place);
   return all;
 }
 
@@ -166,6 +166,12 @@ Gathered gather_by_rule(const BlendField& blend, const Vec3d& p) {
 }
 
 }  // namespace
+
+std::optional<Neighbourhood> neighbourhood_at(const BlendField& blend, const Vec3d& p) {
+  SkeletonSample sum;
+  const Neighbourhood place = told<Derivatives::ScaleInvariant>(blend, p, sum);
+  return is_usable(sum) ? std::optional(place) : std::nullopt;
+}
 
 template <Derivatives Order>
 Gathered gather(const BlendField& blend, const Vec3d& p) {

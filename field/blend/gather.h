@@ -2,7 +2,10 @@
 // blend/.
 #pragma once
 
+#include <optional>
+
 #include "field/blend/blend_field.h"
+#include "field/blend/local_contact.h"
 
 namespace marrow {
 
@@ -10,6 +13,9 @@ struct Gathered {
   SkeletonSample sum;
   AlphaSample alpha;  ///< its gradient from Derivatives::First on
 };
+
+/// What the rule of local contact is told at p, with no gradients. Nothing where the sum is 0 or infinite.
+std::optional<Neighbourhood> neighbourhood_at(const BlendField&, const Vec3d& p);
 
 template <Derivatives>
 Gathered gather(const BlendField&, const Vec3d& p);

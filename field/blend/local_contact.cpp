@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "field/blend/contact.h"
@@ -99,10 +100,8 @@ LocalContact::LocalContact(const Kernel& kernel, bool cavity, Projection project
 
 // In the middle of a ring of radius 1 and thickness 1: f = 2 pi / N(n), the near field 2 pi / N(20).
 double LocalContact::crowd_of_ring() const {
-  Neighbourhood ring;
-  ring.field = 2 * std::numbers::pi / curve_normalisation(kernel_.degree);
-  ring.near_field = 2 * std::numbers::pi / curve_normalisation(near_degree);
-  return crowd_at(ring).value;
+  return crowd_at(2 * std::numbers::pi / curve_normalisation(kernel_.degree),
+                  2 * std::numbers::pi / curve_normalisation(near_degree));
 }
 
 void LocalContact::make_table() {
@@ -119,48 +118,114 @@ void LocalContact::make_table() {
 }
 
 // Cubic pieces over y, level beyond the last entry.
-AlphaSample LocalContact::unequal(double spread, const Vec3d& gradient) const {
+template <Number X>
+X LocalContact::unequal(const X& spread) const {
   constexpr double step = last_y / (entries - 1);
-  const double y = spread / (1 + spread);
-  if (!(y < last_y)) return {.value = angle_.back()};
-  const auto i = static_cast<std::size_t>(y / step);
-  const double t = y / step - static_cast<double>(i), a = angle_[i], b = angle_[i + 1];
+  const X y = spread / (1 + spread);
+  if (!(value_of(y) < last_y)) return X(angle_.back());
+  const auto i = static_cast<std::size_t>(value_of(y) / step);
+  const X t = y * (1 / step) - static_cast<double>(i);
+  const double a = angle_[i], b = angle_[i + 1];
   const double rise = b - a, first = slope_[i] * step, second = slope_[i + 1] * step;
   const double bend = 3 * rise - 2 * first - second, twist = first + second - 2 * rise;
-  const double by_y = (first + t * (2 * bend + t * 3 * twist)) / step;
-  return {.value = a + t * (first + t * (bend + t * twist)),
-          .gradient = gradient * (by_y / ((1 + spread) * (1 + spread)))};
+  return a + t * (first + t * (bend + t * twist));
+}
+
+// In the variable y of the table. What lies between two knots is a cubic, inside the hull of its Bernstein
+// coefficients, whose slope is inside that of their differences.
+LocalContact::Unequal LocalContact::unequal_within(const Interval& spread) const {
+  constexpr double step = last_y / (entries - 1);
+  const auto y_of = [](double s) { return s < 1e300 ? s / (1 + s) : 1; };
+  const double begin = y_of(std::max(0.0, spread.lo)), end = y_of(std::max(0.0, spread.hi));
+  if (begin >= last_y) return {angle_.back(), 0};
+  const auto sample = [&](double y) {
+    Jet<double, 1> spread_here(y / (1 - y));
+    spread_here.slope = {1};
+    const Jet<double, 1> a = unequal(spread_here);
+    return std::array{a.value, a.slope[0] / ((1 - y) * (1 - y))};  // d/dy = d/ds (1 + s)^2
+  };
+  Unequal all{Interval(sample(begin)[0]), 0};
+  if (end >= last_y) all.angle = hull(all.angle, angle_.back());
+  for (double a = begin; a < std::min(end, last_y * (1 - 1e-12));) {
+    const double knot = step * (std::floor(a / step + 1e-9) + 1), b = std::min({knot, end, last_y * (1 - 1e-12)});
+    const auto [at_a, slope_a] = sample(a);
+    const auto [at_b, slope_b] = sample(b);
+    const double third = (b - a) / 3, second = at_a + slope_a * third, fourth = at_b - slope_b * third;
+    for (const double control : {at_a, second, fourth, at_b}) all.angle = hull(all.angle, control);
+    for (const double slope : {slope_a, b > a ? (fourth - second) / third : 0, slope_b})
+      all.steepest = std::max(all.steepest, std::fabs(slope));
+    if (b != knot) break;
+    a = b;
+  }
+  // dy/ds = (1 - y)^2; rounding, and that of the knots at which pieces begin
+  return {{all.angle.lo - 1e-9, all.angle.hi + 1e-9}, all.steepest * (1 - begin) * (1 - begin) * (1 + 1e-6) + 1e-9};
+}
+
+double LocalContact::steepest(const Interval& spread) const { return radii_ ? unequal_within(spread).steepest : 0; }
+
+double LocalContact::steepest_by_crowd(const Interval& crowd) const {
+  return density_ && crowd.hi > 2 ? 2 * std::fabs(dense_factor_) * (crowd.hi - 2) : 0;
+}
+
+Interval LocalContact::range() const {
+  return within({0, std::numeric_limits<double>::infinity()}, {1, std::numeric_limits<double>::infinity()});
+}
+
+// Falls with the crowd beyond 2.
+Interval LocalContact::within(const Interval& spread, const Interval& crowd) const {
+  Interval alpha = contact_;
+  if (radii_) alpha += unequal_within(spread).angle;
+  if (!density_) return alpha;
+  const auto dense = [&](double k) { return k > 2 ? dense_factor_ * (k - 2) * (k - 2) : 0; };
+  alpha = {alpha.lo + dense(crowd.hi), alpha.hi + dense(crowd.lo)};
+  return {std::max(least_, alpha.lo) - 1e-12, std::max(least_, alpha.hi) + 1e-12};
 }
 
 // crowd = (f e^(n-1))^((m-1)/(m-n)), e = near^(-1/(m-1)), m the near degree: k equal points give k.
-AlphaSample LocalContact::crowd_at(const Neighbourhood& at) const {
+template <Number X>
+X LocalContact::crowd_at(const X& field, const X& near_field) const {
   constexpr double m = near_degree;
   const double n = kernel_.degree, share = (n - 1) / (m - 1), exponent = (m - 1) / (m - n);
   // below, quotients of the near field lose their digits; that far away C no longer depends on the angle
   constexpr double smallest_near_field = 1e-250;
-  if (!(at.near_field > smallest_near_field && at.near_field <= field_ceiling && at.field > 0)) return {.value = 1};
-  const double crowd = pow(at.field * pow(at.near_field, -share), exponent);
-  const Vec3d relative = at.field_gradient / at.field - at.near_gradient * (share / at.near_field);
-  return {.value = crowd, .gradient = relative * (crowd * exponent)};
+  const double near = value_of(near_field);
+  if (!(near > smallest_near_field && near <= field_ceiling && value_of(field) > 0)) return X(1.0);
+  const double crowd = pow(value_of(field) * pow(near, -share), exponent);
+  if constexpr (JetNumber<X>) {
+    // relative to the values, as powers of very small fields leave the range of double
+    const X more = log(field * (1 / value_of(field))) - log(near_field * (1 / near)) * share;
+    return crowd * exp(more * exponent);
+  } else {
+    return crowd;
+  }
+}
+
+double LocalContact::crowd(const Neighbourhood& place) const { return crowd_at(place.field, place.near_field); }
+
+template <Number X>
+X LocalContact::angle(const X& field, const X& spread, const X& near_field) const {
+  X alpha(contact_);
+  if (radii_) alpha += unequal(max(spread, X(0.0)));
+  if (!density_) return alpha;
+  const X beyond_pair = crowd_at(field, near_field) - 2;
+  if (value_of(beyond_pair) > 0) alpha += dense_factor_ * square(beyond_pair);
+  return value_of(alpha) > least_ ? alpha : X(least_);
 }
 
 AlphaSample LocalContact::at(const Neighbourhood& place) const {
-  AlphaSample alpha{.value = contact_};
-  if (radii_) {
-    const AlphaSample more = unequal(std::max(0.0, place.spread), place.spread_gradient);
-    alpha.value += more.value;
-    alpha.gradient += more.gradient;
-  }
-  if (density_) {
-    const AlphaSample crowd = crowd_at(place);
-    const double beyond_pair = crowd.value - 2;
-    if (beyond_pair > 0) {
-      alpha.value += dense_factor_ * beyond_pair * beyond_pair;
-      alpha.gradient += crowd.gradient * (2 * dense_factor_ * beyond_pair);
-    }
-    if (!(alpha.value > least_)) return {.value = least_};
-  }
-  return alpha;
+  using X = Jet<double, 3>;
+  const auto with = [](double value, const Vec3d& gradient) {
+    X x(value);
+    x.slope = {gradient.x, gradient.y, gradient.z};
+    return x;
+  };
+  const X alpha = angle(with(place.field, place.field_gradient), with(place.spread, place.spread_gradient),
+                        with(place.near_field, place.near_gradient));
+  return {.value = alpha.value, .gradient = {alpha.slope[0], alpha.slope[1], alpha.slope[2]}};
+}
+
+HessianJet LocalContact::at(const HessianJet& field, const HessianJet& spread, const HessianJet& near_field) const {
+  return angle(field, spread, near_field);
 }
 
 }  // namespace marrow

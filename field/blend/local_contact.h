@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "field/blend/alpha_sample.h"
 #include "field/description/field_node.h"
+#include "field/number/functions.h"
 
 namespace marrow {
 
@@ -43,16 +45,38 @@ class LocalContact {
   bool adapts_to_radii() const { return radii_; }
   bool adapts_to_density() const { return density_; }
   double contact() const { return contact_; }
+  /// No angle is smaller: that of the ring, which may be below 0, or `contact`.
+  double least() const { return least_; }
 
   AlphaSample at(const Neighbourhood&) const;
+  /// The same with second derivatives.
+  HessianJet at(const HessianJet& field, const HessianJet& spread, const HessianJet& near_field) const;
+  /// How many equal skeletons would make this neighbourhood; 1 where it does not tell.
+  double crowd(const Neighbourhood&) const;
+  /// All angles there may be, and those with a spread and a crowd within bounds. [the cubic pieces lie in the hull of
+  /// their control points]
+  Interval range() const;
+  Interval within(const Interval& spread, const Interval& crowd) const;
+  /// Largest |d alpha / d spread| and |d alpha / d crowd| within bounds.
+  double steepest(const Interval& spread) const;
+  double steepest_by_crowd(const Interval& crowd) const;
 
  private:
   static constexpr std::size_t entries = 17;
 
   double crowd_of_ring() const;
   void make_table();
-  AlphaSample unequal(double spread, const Vec3d& gradient) const;
-  AlphaSample crowd_at(const Neighbourhood&) const;
+  template <Number X>
+  X unequal(const X& spread) const;
+  template <Number X>
+  X crowd_at(const X& field, const X& near_field) const;
+  template <Number X>
+  X angle(const X& field, const X& spread, const X& near_field) const;
+  struct Unequal {
+    Interval angle;
+    double steepest = 0;
+  };
+  Unequal unequal_within(const Interval& spread) const;
 
   Kernel kernel_;
   bool cavity_;
@@ -62,5 +86,11 @@ class LocalContact {
   double dense_factor_ = 0;
   std::array<double, entries> angle_{}, slope_{};
 };
+
+/// The radius by which a skeleton counts in the spread.
+inline double mean_radius(const PointSkeleton& s) { return s.radius; }
+inline double mean_radius(const SegmentSkeleton& s) { return std::sqrt(s.radius_from) * std::sqrt(s.radius_to); }
+inline double mean_radius(const ArcSkeleton& s) { return std::sqrt(s.radius_from) * std::sqrt(s.radius_to); }
+inline double mean_radius(const TriangleSkeleton& s) { return (s.radii[0] + s.radii[1] + s.radii[2]) / 3; }
 
 }  // namespace marrow

@@ -21,6 +21,9 @@ class BoundedCurve {
   double largest_field() const { return f_max_; }  ///< on the skeleton
   double top_field() const { return f_top_; }      ///< f*
   double top() const { return g_top_; }            ///< g(f*)
+  double field_power() const { return p_; }        ///< p
+  int height_power() const { return e_; }          ///< e
+  double height_scale() const { return g_0_; }     ///< g_0
 
   /// f >= 0. Continued beyond f*.
   double at(double f) const;

@@ -68,4 +68,17 @@ ProfileSample Profile::at(double y) const {
   return {base * x * x, -half / shape_squared * base * x, half * (half - 1) / (shape_squared * shape_squared) * base};
 }
 
+// Powers with the exponents h, h - 1 and h - 2 as factors; of the compact kernel one of them may be 0, and then all is.
+double Profile::third(double y) const {
+  const double half = degree_ / 2.0, shape_squared = kernel_.shape * kernel_.shape;
+  if (kernel_.family == KernelFamily::Compact) {
+    const double x = 1 - y / shape_squared, factor = half * (half - 1) * (half - 2);
+    if (!(x > 0) || factor == 0) return 0;
+    return -factor / (shape_squared * shape_squared * shape_squared) * pow(x, half - 3);
+  }
+  const bool is_inverse = kernel_.family == KernelFamily::Inverse;
+  const double x = is_inverse ? 1 / y : 1 / (1 + shape_squared * y), factor = is_inverse ? x : shape_squared * x;
+  return -half * (half + 1) * (half + 2) * factor * factor * factor * half_power(x, degree_);
+}
+
 }  // namespace marrow

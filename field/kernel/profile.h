@@ -24,6 +24,8 @@ class Profile {
   double normalisation() const { return normalisation_; }
   /// y >= 0, for the inverse kernel > 0.
   ProfileSample at(double y) const;
+  /// The third derivative.
+  double third(double y) const;
 
  private:
   Kernel kernel_;

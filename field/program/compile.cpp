@@ -16,6 +16,8 @@
 #include "field/program/field_program.h"
 #include "field/program/flattener.h"
 #include "field/program/ramped_field.h"
+#include "field/program/simplify.h"
+#include "field/program/tree_builder.h"
 #include "field/program/validate.h"
 #include "field/tree/tree_node.h"
 
@@ -24,6 +26,10 @@ namespace {
 
 // A description may place one node many times; with this many more placements than nodes something is wrong.
 constexpr std::size_t max_shared_placements = 1'000'000;
+
+// Each blend has a tracer of its own, which takes milliseconds and some hundred kilobytes. Where a union has more
+// blends of a few skeletons than this, they become leaves of a tree, whose tracer takes each as it is.
+constexpr std::ptrdiff_t few_blends = 1000;
 
 struct Placement {
   FieldNodeId node;
@@ -50,7 +56,25 @@ class Compiler {
 
  private:
   Result<FieldProgram> run_from(const Placement& root) {
-    std::vector<Placement> open{root};
+    const std::vector<Placement> fields = fields_of(root);
+    const auto is_small = [&](const Placement& p) { return is_small_blend(p.node); };
+    const auto small = std::count_if(fields.begin(), fields.end(), is_small);
+    const bool scattered = small > few_blends;
+    std::vector<Placement> in_tree;
+    for (const Placement& here : fields) {
+      const bool is_leaf = scattered && is_small(here);
+      if (is_leaf || !add_as_part(here)) in_tree.push_back(here);
+    }
+    if (!in_tree.empty() && placements_ <= max_placements_) add_tree(in_tree);
+    if (placements_ > max_placements_)
+      report(root.node, "the field holds over a million copies of its own nodes", "place fewer copies inside copies");
+    if (!errors_.empty()) return errors_;
+    return FieldProgram(std::move(parts_), std::move(trees_), std::move(warnings_));
+  }
+
+  // What the field is the union of, in its order.
+  std::vector<Placement> fields_of(const Placement& root) {
+    std::vector<Placement> open{root}, fields;
     while (!open.empty() && placements_ <= max_placements_) {
       const Placement here = open.back();
       open.pop_back();
@@ -59,15 +83,35 @@ class Compiler {
                             [&](const Transform& t) {
                               open.push_back({t.of, here.from_node * t.parent_from_child});
                             },
-                            [&](const Blend& b) { add_part(b, here); },
-                            [&](const Primitive& p) { add_part(blend_of(here.node), here, p.model); },
-                            [&](const GeneralNode&) { add_tree(here); }},
+                            [&](const auto&) { fields.push_back(here); }},
                  description_[here.node].what);
     }
-    if (placements_ > max_placements_)
-      report(root.node, "the field holds over a million copies of its own nodes", "place fewer copies inside copies");
-    if (!errors_.empty()) return errors_;
-    return FieldProgram(std::move(parts_), std::move(trees_), std::move(warnings_));
+    return fields;
+  }
+
+  // Of up to four skeletons, none of which is a line or graph of many.
+  bool is_small_blend(FieldNodeId id) const {
+    const FieldNode& node = description_[id];
+    if (const auto* primitive = std::get_if<Primitive>(&node.what))
+      return !std::holds_alternative<PolylineSkeleton>(primitive->skeleton) &&
+             !std::holds_alternative<CurveSkeleton>(primitive->skeleton) &&
+             !std::holds_alternative<SharedSkeletonGraph>(primitive->skeleton);
+    const auto* blend = std::get_if<Blend>(&node.what);
+    return blend != nullptr && blend->of.size() <= 4 &&
+           std::all_of(blend->of.begin(), blend->of.end(), [&](auto child) {
+             return std::holds_alternative<Primitive>(description_[child].what) && is_small_blend(child);
+           });
+  }
+
+  // False: it belongs into the tree.
+  bool add_as_part(const Placement& here) {
+    const FieldNode& node = description_[here.node];
+    if (const auto* blend = std::get_if<Blend>(&node.what)) parts_.push_back(part_of(*blend, here));
+    else if (const auto* p = std::get_if<Primitive>(&node.what))
+      parts_.push_back(part_of(blend_of(here.node), here, p->model));
+    else if (const auto sum = sum_of_points(description_, here.node)) parts_.push_back(part_of(*sum, here));
+    else return false;
+    return true;
   }
 
   // The last child first, so that the stack gives them in their order.
@@ -134,10 +178,6 @@ class Compiler {
       warn(node, "skeletons of this kernel join before they touch, whatever alpha", "use " + narrower);
   }
 
-  void add_part(const Blend& blend, const Placement& here, std::optional<SkeletonModel> model = {}) {
-    parts_.push_back(part_of(blend, here, model));
-  }
-
   PlacedBlend part_of(const Blend& blend, const Placement& here, std::optional<SkeletonModel> model = {}) {
     PlacedBlend part;
     part.blend = empty_field(blend);
@@ -164,87 +204,29 @@ class Compiler {
     return part;
   }
 
-  // Every node below `here` once, however often it is placed.
-  void add_tree(const Placement& here) {
-    const std::vector<std::size_t> below = nodes_below(here.node);
-    auto nodes = std::make_shared<std::vector<TreeNode>>();
-    std::vector<FieldTree::Record> records;
-    std::vector<std::uint32_t> children;
-    std::vector<double> paths;  // how often a walk from the root of a node visits nodes
-    std::vector<std::uint32_t> record_of(here.node.index() + 1);
-    nodes->push_back(CrispUnion{});
-    const auto add = [&](TreeNode node, std::span<const FieldNodeId> of, MaterialId material) {
-      FieldTree::Record record{.node = static_cast<std::uint32_t>(nodes->size()),
-                               .first_child = static_cast<std::uint32_t>(children.size()),
-                               .child_count = static_cast<std::uint32_t>(of.size()),
-                               .material = material,
-                               .support = {}};
-      paths.push_back(1);
-      for (const FieldNodeId child : of) {
-        children.push_back(record_of[child.index()]);
-        paths.back() += paths[children.back()];
-      }
-      nodes->push_back(std::move(node));
-      records.push_back(record);
-    };
-    for (const std::size_t i : below) {
-      record_of[i] = static_cast<std::uint32_t>(records.size());
-      const FieldNodeId id{i};
-      std::visit(Overloaded{[&](const Union& u) { add(CrispUnion{}, u.of, {}); },
-                            [&](const Transform& t) {
-                              add(AffineWarp{t.parent_from_child, t.parent_from_child.inverse()}, {&t.of, 1}, {});
-                            },
-                            [&](const Blend& b) { add(leaf_of(b, id), {}, {}); },
-                            [&](const Primitive& p) { add(leaf_of(blend_of(id), id, p.model), {}, {}); },
-                            [&](const GeneralNode& n) {
-                              add(std::visit([](const auto& kind) { return TreeNode(kind); }, n.node->node), n.of,
-                                  n.material);
-                            }},
-                 description_[id].what);
+  // All that is no part, under one union: a node that it places more than once is held once.
+  void add_tree(const std::vector<Placement>& fields) {
+    TreeBuilder builder(description_, [this](const Blend& blend, FieldNodeId id) { return leaf_of(blend, id); });
+    std::vector<FieldNodeId> roots;
+    for (const Placement& here : fields)
+      if (lone_point(description_[here.node]) == nullptr) roots.push_back(here.node);
+    builder.read(roots);
+    for (const Placement& here : fields) {
+      const PointSkeleton* point = lone_point(description_[here.node]);
+      const auto scale = point != nullptr ? here.from_node.similarity() : std::nullopt;
+      if (!scale) builder.place(here.node, here.from_node);
+      else
+        builder.place(PointLeaf{here.from_node.point(point->at), point->radius * *scale}, Affine{},
+                      std::get<Primitive>(description_[here.node].what).material);
     }
-    if (paths.back() > static_cast<double>(max_placements_)) placements_ = max_placements_ + 1;
-    if (!(here.from_node == Affine{})) {
-      records.push_back({.node = static_cast<std::uint32_t>(nodes->size()),
-                         .first_child = static_cast<std::uint32_t>(children.size()),
-                         .child_count = 1,
-                         .material = {},
-                         .support = {}});
-      children.push_back(static_cast<std::uint32_t>(records.size() - 2));
-      nodes->push_back(AffineWarp{here.from_node, here.from_node.inverse()});
-    }
-    trees_.emplace_back(std::move(nodes), std::move(records), std::move(children));
+    if (builder.visits() > static_cast<double>(max_placements_)) placements_ = max_placements_ + 1;
+    else trees_.push_back(std::move(builder).tree());
   }
 
-  BlendLeaf leaf_of(const Blend& blend, FieldNodeId id, std::optional<SkeletonModel> model = {}) {
+  BlendLeaf leaf_of(const Blend& blend, FieldNodeId id) {
+    std::optional<SkeletonModel> model;
+    if (const auto* primitive = std::get_if<Primitive>(&description_[id].what)) model = primitive->model;
     return {std::make_shared<BlendField>(part_of(blend, {id, Affine{}}, model).blend)};
-  }
-
-  // Without what stands inside blends, children before parents.
-  std::vector<std::size_t> nodes_below(FieldNodeId root) const {
-    std::vector<bool> seen(root.index() + 1, false);
-    std::vector<FieldNodeId> open{root};
-    seen[root.index()] = true;
-    const auto enter = [&](std::span<const FieldNodeId> children) {
-      for (const FieldNodeId child : children) {
-        if (seen[child.index()]) continue;
-        seen[child.index()] = true;
-        open.push_back(child);
-      }
-    };
-    while (!open.empty()) {
-      const FieldNode& node = description_[open.back()];
-      open.pop_back();
-      std::visit(Overloaded{[](const Primitive&) {}, [](const Blend&) {},
-                            [&](const Transform& t) {
-                              enter({&t.of, 1});
-                            },
-                            [&](const auto& n) { enter(n.of); }},
-                 node.what);
-    }
-    std::vector<std::size_t> indices;
-    for (std::size_t i = 0; i < seen.size(); ++i)
-      if (seen[i]) indices.push_back(i);
-    return indices;
   }
 
   // The field of angles of a blend, which is placed with it.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "field/program/field_program.h"
+#include "field/tree/blend_values.h"
 #include "field/tree/tree_node.h"
 
 namespace marrow {
@@ -89,6 +90,15 @@ FieldSample evaluate(const FieldProgram& program, const Vec3d& p) {
 }
 
 double value(const FieldProgram& program, const Vec3d& p) { return largest_part(program, p).value; }
+
+HessianJet second_order_value(const FieldProgram& program, const Vec3<HessianJet>& p) {
+  const Largest largest = largest_part(program, {p.x.value, p.y.value, p.z.value});
+  if (largest.tree != nullptr) return value(*largest.tree, p);
+  if (largest.part == nullptr) return {};
+  const PlacedBlend& part = *largest.part;
+  if (part.is_in_world()) return tree::blend_value(part.blend, p);
+  return tree::blend_value(part.blend, AffineWarp{part.world_from_local, part.local_from_world}.child_point(p));
+}
 
 bool is_single_blend(const FieldProgram& program) { return program.parts().size() == 1 && program.trees().empty(); }
 

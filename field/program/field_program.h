@@ -61,6 +61,9 @@ FieldSample evaluate(const FieldProgram&, const Vec3d& p);
 /// The `value` of evaluate(), bit for bit, at less cost.
 double value(const FieldProgram&, const Vec3d& p);
 
+/// With gradient and Hessian, composed with those of p.
+HessianJet second_order_value(const FieldProgram&, const Vec3<HessianJet>& p);
+
 /// Whether the field is one blend, so that sum, si_gradient, ... mean something for the whole field.
 bool is_single_blend(const FieldProgram&);
 

@@ -3,33 +3,68 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "field/blend/alpha_sample.h"
 #include "field/program/field_program.h"
+#include "field/skeleton/second_order.h"
 
 namespace marrow {
 
 class RampedField : public AlphaSource {
  public:
   /// The program is in the coordinates of the blend that it steers.
-  RampedField(FieldProgram program, const AlphaRamp& ramp) : program_(std::move(program)), ramp_(ramp) {}
+  RampedField(FieldProgram program, const AlphaRamp& ramp) : program_(std::move(program)), ramp_(ramp) {
+    trees_.assign(program_.trees().begin(), program_.trees().end());
+    for (const PlacedBlend& part : program_.parts()) trees_.push_back(tree_of(part));
+  }
 
   AlphaSample at(const Vec3d& p) const override {
     const FieldSample s = evaluate(program_, p);
     const double share = (s.value - ramp_.from[0]) / (ramp_.from[1] - ramp_.from[0]);
-    const double slope = share > 0 && share < 1 ? (ramp_.to[1] - ramp_.to[0]) / (ramp_.from[1] - ramp_.from[0]) : 0;
+    const double slope = share > 0 && share < 1 ? slope_of_ramp() : 0;
     return {.value = ramp_(s.value), .gradient = slope == 0 ? Vec3d{} : s.gradient * slope};
+  }
+
+  HessianJet second_order_at(const Vec3d& p) const override {
+    const HessianJet v = second_order_value(program_, variables_at(p));
+    const double share = (v.value - ramp_.from[0]) / (ramp_.from[1] - ramp_.from[0]);
+    if (!(share > 0 && share < 1)) return ramp_(v.value);
+    return ramp_.to[0] + (v - ramp_.from[0]) * ((ramp_.to[1] - ramp_.to[0]) / (ramp_.from[1] - ramp_.from[0]));
   }
 
   // A ramp is monotone.
   Interval bounds(const Box3& box) const override {
-    const Interval v = value_bounds(program_, box);
+    const Interval v = enclosed<Interval>(span_of(box));
     const double a = ramp_(v.lo), b = ramp_(v.hi);
     return {rounding::down(std::min(a, b), 8), rounding::up(std::max(a, b), 8)};
   }
 
+  Vec3<Interval> slopes(const Box3& box) const override {
+    using X = Jet<Interval, 3>;
+    const Vec3<Interval> p = span_of(box);
+    const X v = enclosed<X>({X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)});
+    const double least = std::min(ramp_.from[0], ramp_.from[1]), most = std::max(ramp_.from[0], ramp_.from[1]);
+    if (v.value.hi < least || v.value.lo > most) return {Interval(0), Interval(0), Interval(0)};
+    const bool level_too = v.value.lo <= least || v.value.hi >= most;
+    const Interval slope = level_too ? hull(Interval(0), slope_of_ramp()) : Interval(slope_of_ramp());
+    return {v.slope[0] * slope, v.slope[1] * slope, v.slope[2] * slope};
+  }
+
  private:
+  static Vec3<Interval> span_of(const Box3& box) {
+    return {{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
+  }
+  double slope_of_ramp() const { return (ramp_.to[1] - ramp_.to[0]) / (ramp_.from[1] - ramp_.from[0]); }
+  template <Number X>
+  X enclosed(const Vec3<X>& p) const {
+    X most = value(trees_.front(), p);
+    for (std::size_t i = 1; i < trees_.size(); ++i) most = max(most, value(trees_[i], p));
+    return most;
+  }
+
   FieldProgram program_;
+  std::vector<FieldTree> trees_;  ///< all of it; never empty
   AlphaRamp ramp_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "field/kernel/profile.h"
 #include "field/skeleton/arc_view.h"
+#include "field/skeleton/nearest_place.h"
 #include "field/skeleton/skeletons.h"
 
 namespace marrow {
@@ -174,7 +175,12 @@ Nearest nearest_of(const ArcSkeleton& s, const Vec3d& p) {
   return best;
 }
 
+NearestPlace place_of(const Nearest& q) { return {q.at, q.radius, !(q.moves == Matrix3{})}; }
+
 }  // namespace
+
+NearestPlace nearest_place(const SegmentSkeleton& s, const Vec3d& p) { return place_of(nearest_of(s, p)); }
+NearestPlace nearest_place(const ArcSkeleton& s, const Vec3d& p) { return place_of(nearest_of(s, p)); }
 
 template <Derivatives Order>
 SkeletonSample distance_field(const SegmentSkeleton& s, const Vec3d& p, const Kernel& kernel) {

@@ -1,8 +1,7 @@
-// What else is integrated along a segment: how its field is shared between its ends, and its Hessian.
+// What else is integrated along a segment: how its field is shared between its ends.
 #pragma once
 
 #include "field/description/field_node.h"
-#include "field/math/matrix3.h"
 #include "field/math/vec3.h"
 
 namespace marrow {
@@ -15,8 +14,5 @@ struct ShareSample {
   Vec3d gradient{};
 };
 ShareSample segment_share(const SegmentSkeleton&, const Vec3d& p, const Kernel&);
-
-/// The Hessian of segment_field(), radius linear; relative error below 1e-12. On the skeleton: 0.
-Matrix3 segment_hessian(const SegmentSkeleton&, const Vec3d& p, const Kernel&);
 
 }  // namespace marrow

@@ -7,7 +7,6 @@
 #include "field/trace/block.h"
 #include "field/trace/cell_tree.h"
 #include "field/trace/precision.h"
-#include "field/trace/tile_boxes.h"
 
 namespace marrow {
 namespace {
@@ -34,7 +33,7 @@ Vec3d vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 // polynomials and the remainders B3 and B4 of tracing.md, with series sums up to twice their values at 0 (a step of at
 // most a tenth of the distance). Twice the errors of the block, since a ray may start in its neighbour. Where no step
 // is proved, beside a touch of the surface with itself, the one that comes nearest to it. Block coordinates.
-double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent, const Block::Fine& fine,
+double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent, const BlockLevel& fine,
                     const IsoCurve& iso, int degree) {
   const double slope = dot(vec(f.gradient), normal), n = degree;
   // As march.h: sums of floats, and positions in float.
@@ -57,10 +56,6 @@ double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent,
   return best;
 }
 
-}  // namespace
-
-namespace {
-
 std::uint64_t next_number() {
   static std::atomic<std::uint64_t> last = 0;
   return ++last;
@@ -69,7 +64,6 @@ std::uint64_t next_number() {
 }  // namespace
 
 struct BlendTracer::State {
-  const std::uint64_t number = next_number();  // no two tracers have the same
   BlendField field;
   Correction correction;
   IsoCurve iso;
@@ -77,7 +71,6 @@ struct BlendTracer::State {
   SourceTree sources;
   const BlockKernels& kernels;
   NearFar coarse, fine;
-  LatticeError lattice[2];  // of curves, and of points
   mutable BlockArena arena;
   CellTree tree;
   Block::Context context;
@@ -91,19 +84,9 @@ struct BlendTracer::State {
         kernels(k),
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
         fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
-        lattice{lattice_error(field.degree), lattice_error(field.degree - 1)},
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
-        context{sources.pieces(),
-                tree,
-                cutter,
-                coarse,
-                fine,
-                lattice,
-                iso,
-                kernels,
-                field.degree,
-                arena,
-                options.polynomials && polynomials_pay(sources.pieces().size())} {}
+        context{sources.pieces(),   tree,         cutter, coarse, fine, iso, kernels, field.degree, arena,
+                options.kept_bytes, next_number()} {}
 };
 
 Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const TraceOptions& options) {
@@ -155,77 +138,76 @@ struct RayInCube {
 
 std::optional<CellHit> BlendTracer::first_hit(std::size_t tile, const Ray& ray, bool any, CellLog& log) const {
   const Vec3d& direction = ray.direction;
-  auto [enter, exit] = clip(tile_box(tile), ray, {1 / direction.x, 1 / direction.y, 1 / direction.z});
+  const Tile& made = state_->tree.tile(tile);
+  auto [enter, exit] = clip(made.content_box(), ray, {1 / direction.x, 1 / direction.y, 1 / direction.z});
   log.enter = enter;
+  log.side = CellLog::Side::Unknown;
   if (any) exit = std::min(exit, ray.t_max);
   if (!(enter < exit)) return {};
-  const auto hit = hit_in(state_->tree.tile(tile), ray, any, enter, exit, log);
+  const auto hit = hit_in(made, ray, any, enter, exit, log);
   return hit && hit->t <= ray.t_max ? hit : std::nullopt;
 }
 
-// Boxes in the ray's order. They overlap by roundings, so that one that begins before a hit may hold a nearer one.
+// The slots of an octant that is one cell follow each other along the ray: they count as one.
 std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, bool any, double enter, double exit,
                                            CellLog& log) const {
-  const TileBoxes& boxes = tile.boxes();
   const TileContent& content = tile.content();
   const RayInCube cube(ray, tile.place().center, tile.place().half);
-  std::optional<CellHit> best;
-  const auto visit = [&](int slot, float begin, float end) {
-    const double from = std::max(enter, cube.to_world(begin)), to = std::min(exit, cube.to_world(end));
-    const auto hit = content.cells >> slot & 1 ? hit_in(block(tile, slot), ray, any, from, to, log)
+  Walk walk;
+  state_->kernels.walk(tile.occupied(), cube.local, cube.to_local(enter), cube.to_local(exit), walk);
+  const auto holder = [&](int i) {
+    const int octant = path_of(walk.slot[i]).outer;
+    return content.large_cells >> octant & 1 ? slot_at({octant, 0}) : walk.slot[i];
+  };
+  for (int i = 0; i < walk.count; ++i) {
+    const int slot = holder(i);
+    const double from = std::max(enter, cube.to_world(walk.begin[i]));
+    while (i + 1 < walk.count && holder(i + 1) == slot) ++i;
+    const double to = std::min(exit, cube.to_world(walk.end[i]));
+    const auto hit = content.cells >> slot & 1 ? hit_in(tile, slot, ray, any, from, to, log)
                                                : hit_in(state_->tree.child(tile, slot), ray, any, from, to, log);
-    if (hit && (!best || hit->t < best->t)) best = hit;
-  };
-  const auto behind = [&](float begin) { return best && (any || cube.to_world(begin) > best->t); };
-  // A tight box is worth a block only where many rays come.
-  const auto cell_box = [&](int slot) {
-    return state_->context.polynomials ? block(tile, slot).box() : CellTree::cell(tile, slot).box();
-  };
-  Stretches outer, inner;
-  state_->kernels.stretches(boxes.octants(), cube.local, cube.to_local(enter), cube.to_local(exit), outer);
-  for (int i = 0; i < outer.count; ++i) {
-    const int octant = outer.order[i];
-    if (behind(outer.begin[octant])) break;
-    if (content.large_cells >> octant & 1) {
-      visit(slot_at({octant, 0}), outer.begin[octant], outer.end[octant]);
-      continue;
-    }
-    state_->kernels.stretches(boxes.slots(octant, cell_box), cube.local, outer.begin[octant], outer.end[octant], inner);
-    for (int k = 0; k < inner.count; ++k) {
-      const int slot = inner.order[k];
-      if (behind(inner.begin[slot])) break;
-      visit(slot_at({octant, slot}), inner.begin[slot], inner.end[slot]);
-    }
+    if (hit) return hit;
   }
-  return best;
+  return {};
 }
 
 namespace {
 
 // Whether a ray begins inside, by the exact field: asked only when a block is entered inside. Rays of a camera share
 // their beginning.
-bool begins_inside(const BlendField& field, std::uint64_t field_number, const Ray& ray) {
+bool begins_inside(const BlendField& field, std::uint64_t tracer, const Ray& ray) {
   struct Place {
-    std::uint64_t field_number = 0;
+    std::uint64_t tracer = 0;
     Vec3d at;
     bool inside = false;
   };
   thread_local Place last;
   const Vec3d at = ray.at(ray.t_min);
-  if (last.field_number != field_number || !(last.at == at)) last = {field_number, at, corrected_value(field, at) >= 1};
+  if (last.tracer != tracer || !(last.at == at)) last = {tracer, at, corrected_value(field, at) >= 1};
   return last.inside;
 }
 
 }  // namespace
 
-std::optional<CellHit> BlendTracer::hit_in(const Block& b, const Ray& ray, bool any, double enter, double exit,
-                                           CellLog& log) const {
+std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray& ray, bool any, double enter,
+                                           double exit, CellLog& log) const {
+  const Block& b = block(tile, slot);
+  if (b.empty()) {
+    tile.note_empty(slot);
+    return {};
+  }
   const RayInCube cube(ray, b.center(), b.half());
-  BlockKernels::Query query{
-      .t0 = cube.to_local(enter), .t1 = cube.to_local(exit), .any = any, .from_surface = enter <= ray.t_min};
+  BlockKernels::Query query{.t0 = cube.to_local(enter),
+                            .t1 = cube.to_local(exit),
+                            .any = any,
+                            .from_surface = enter <= ray.t_min,
+                            .from_outside = log.side == CellLog::Side::Outside,
+                            .leaving = log.side == CellLog::Side::Inside};
   Root root = state_->kernels.first_root(b.view(), cube.local, query);
   log.evaluations += static_cast<std::uint32_t>(root.evaluations);
-  if (root.enters_inside && begins_inside(state_->field, state_->number, ray)) {
+  if (root.begins_outside) log.side = CellLog::Side::Outside;
+  if (root.enters_inside && begins_inside(state_->field, state_->context.tracer, ray)) {
+    log.side = CellLog::Side::Inside;
     query.leaving = true;
     root = state_->kernels.first_root(b.view(), cube.local, query);
     log.evaluations += static_cast<std::uint32_t>(root.evaluations);
@@ -271,7 +253,7 @@ TraceStatistics BlendTracer::statistics() const {
       if (b == nullptr) continue;
       ++s.blocks;
       s.bytes += sizeof(Block);
-      const Block::Fine* fine = b->fine_if_made();
+      const BlockLevel* fine = b->fine_if_kept();
       if (fine == nullptr) continue;
       s.sources += static_cast<std::size_t>((fine->level.curve_groups + fine->level.point_groups) * lanes);
       s.largest_error = std::max(s.largest_error, fine->f_error + fine->gradient_error / state_->field.degree);

@@ -28,9 +28,9 @@ struct TraceOptions {
   /// Aim for the displacement of the traced surface from the exact one, over the local radius. Error budgets come from
   /// it; TraceStatistics::largest_error tells what is certified.
   double tolerance = 1e-5;
-  /// Polynomials find where surface can be, unless there are so many pieces that few rays come to each. Off: in 10^6
-  /// rays of the stress set they once passed a surface 1.9e-4 deep without saying so (at a silhouette).
-  bool polynomials = false;
+  /// From so much memory of blocks in the process on, what blocks hold is not kept but made for each thread anew, to
+  /// the same bits. A million segments seen from afar have a million blocks that one or two rays meet.
+  std::size_t kept_bytes = std::size_t{1} << 30;
 };
 
 struct CellHit {
@@ -43,6 +43,8 @@ struct CellLog {
   double enter = 0;                                            ///< t at which the ray came into the tile
   double undecided = std::numeric_limits<double>::infinity();  ///< t of the first gap too short to decide
   std::uint32_t evaluations = 0;                               ///< of the field
+  enum class Side { Unknown, Outside, Inside };
+  Side side = Side::Unknown;  ///< where the ray was before what it meets next
 };
 
 struct SurfacePoint {
@@ -84,7 +86,7 @@ class BlendTracer {
   struct State;
   explicit BlendTracer(std::unique_ptr<State>);
   std::optional<CellHit> hit_in(const Tile&, const Ray&, bool any, double enter, double exit, CellLog&) const;
-  std::optional<CellHit> hit_in(const Block&, const Ray&, bool any, double enter, double exit, CellLog&) const;
+  std::optional<CellHit> hit_in(const Tile&, int slot, const Ray&, bool any, double enter, double exit, CellLog&) const;
   const Block& block(const Tile&, int slot) const;
   std::unique_ptr<State> state_;
 };

@@ -1,10 +1,10 @@
 #include "field/trace/block.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstring>
-#include <vector>
 
+#include "field/trace/level_cache.h"
 #include "field/trace/source_groups.h"
 
 namespace marrow {
@@ -102,50 +102,134 @@ Level make_level(const Block::Context& context, const NearFar& precision, const 
   return level;
 }
 
-FieldLevel write_level(const Level& level, float* sources, float* far) {
+// The largest first derivative and half of the largest second one along any line in the cube, of f and of G. A monomial
+// in [-1, 1]^3 has a gradient of at most its degree. Its second derivative along a unit vector e is e.A e, |A_ij| at
+// most the sum over monomials of their |second derivatives|, and the largest eigenvalue of a symmetric matrix is at
+// most its largest sum of a row. |G'| and |G''| by the length of those of the components.
+struct FarRange {
+  std::array<float, 4> slope{}, bend{};
+
+  explicit FarRange(const float* far) {
+    for (std::size_t k = 0; k < 4; ++k) add(far, k);
+  }
+  void add(const float* far, std::size_t k) {
+    std::array<std::array<float, 3>, 3> second{};
+    for (std::size_t i = 1; i < far_monomials; ++i) {
+      const Monomial& m = monomials[i];
+      const int e[3] = {m.a, m.b, m.c};
+      const float c = std::fabs(far[4 * i + k]);
+      slope[k] += static_cast<float>(m.degree()) * c;
+      for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 3; ++column)
+          second[row][column] += static_cast<float>(e[row] * (row == column ? e[row] - 1 : e[column])) * c;
+    }
+    for (const auto& row : second) bend[k] = std::max(bend[k], 0.5001F * (row[0] + row[1] + row[2]));
+  }
+  static float length(const std::array<float, 4>& v) { return std::sqrt(v[1] * v[1] + v[2] * v[2] + v[3] * v[3]); }
+};
+
+template <class Memory>
+BlockLevel write_level(const Level& level, Memory& memory) {
   const auto curve_floats = static_cast<std::size_t>(level.curves.group_count() * floats_per_group);
+  float* const sources = memory.allocate(level.source_floats() + far_floats);
+  float* const far = sources + level.source_floats();
   std::copy_n(level.curves.data(), curve_floats, sources);
   std::copy_n(level.points.data(), level.source_floats() - curve_floats, sources + curve_floats);
   write_far(level.far, far);
-  return {.sources = sources,
-          .curve_groups = level.curves.group_count(),
-          .point_groups = level.points.group_count(),
-          .far = far};
+  const FarRange range(far);
+  return {.level = {.sources = sources,
+                    .curve_groups = level.curves.group_count(),
+                    .point_groups = level.points.group_count(),
+                    .far = far,
+                    .far_slope = range.slope[0],
+                    .far_g_slope = FarRange::length(range.slope),
+                    .far_bend = range.bend[0],
+                    .far_g_bend = FarRange::length(range.bend)},
+          .f_error = level.far.f_error,
+          .gradient_error = level.far.gradient_error};
+}
+
+bool holds_surface(const CubeBounds& b, const IsoCurve& iso) {
+  if (static_cast<double>(b.f_low) > iso.critical_field() * 1.00001) return false;
+  return b.touches || !iso.outside(0, static_cast<double>(b.f_high), static_cast<double>(b.g_high));
+}
+
+// Whether surface can be in a cube of a block, which is taken a little larger than it is, by far more than the rounding
+// of rays in float.
+bool may_hold(const Block::Context& context, const FieldLevel& level, const Vec3d& center, double half) {
+  constexpr double overlap = 1e-4;
+  const float c[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
+  return holds_surface(context.kernels.cube_bounds(level, context.degree, c, static_cast<float>(half + overlap)),
+                       context.iso);
+}
+
+// The octants of octants of an octant of a block that bounds do not prove to be outside or inside.
+std::uint64_t surface_slots(const Block::Context& context, const FieldLevel& level, int octant) {
+  const Vec3d whole = octant_center({0, 0, 0}, 1, octant);
+  std::uint64_t slots = 0;
+  for (int outer = 0; outer < 8; ++outer) {
+    const Vec3d center = octant_center(whole, 0.5, outer);
+    if (!may_hold(context, level, center, 0.25)) continue;
+    for (int inner = 0; inner < 8; ++inner)
+      if (may_hold(context, level, octant_center(center, 0.25, inner), 0.125))
+        slots |= std::uint64_t{1} << slot_at({outer, inner});
+  }
+  return slots;
 }
 
 }  // namespace
 
 Block::Block(const Context& context, const CellTree::Cell& cell)
-    : context_(context), cell_(cell), source_{coarse_,         context.degree,  context.iso,
-                                              context.lattice, context.kernels, context.polynomials} {
-  const Level coarse = make_level(context, context.coarse, context.tree.coarse_surroundings(cell), cell);
-  float* const sources = context.arena.allocate(coarse.source_floats() + far_floats);
-  coarse_ = write_level(coarse, sources, sources + coarse.source_floats());
-  coarse_.f_error = static_cast<float>(1.0001 * coarse.far.f_error);
-  coarse_.g_error = static_cast<float>(1.0001 * coarse.far.gradient_error);
-  view_ = {.octants = nullptr,
-           .coarse = coarse_,
-           .make_fine = [](const void* owner) -> const FieldLevel& {
-             return static_cast<const Block*>(owner)->fine().level;
-           },
-           .owner = this,
-           .degree = context.degree,
-           .iso = context.iso.view()};
-  octants_.emplace(source_, Cube{.center = {0, 0, 0}, .half = 1}, 1);
-  view_.octants = &*octants_;
-  for (int i = 0; i < 8; ++i) {
-    if (!(octants_->boxes.present >> i & 1)) continue;
-    const Vec3d center = octant_center(cell.center, cell.half, i), h{cell.half / 2, cell.half / 2, cell.half / 2};
-    box_.include({center - h, center + h});
-  }
+    : context_(context),
+      cell_(cell),
+      view_{.find_surface = [](const void* owner,
+                               int octant) { return static_cast<const Block*>(owner)->surface(octant); },
+            .make_coarse = [](const void* owner) -> const FieldLevel& {
+              return static_cast<const Block*>(owner)->coarse().level;
+            },
+            .make_fine = [](const void* owner) -> const FieldLevel& {
+              return static_cast<const Block*>(owner)->fine().level;
+            },
+            .owner = this,
+            .degree = context.degree,
+            .iso = context.iso.view()} {
+  for (int octant = 0; octant < 8; ++octant)
+    if (may_hold(context, coarse().level, octant_center({0, 0, 0}, 1, octant), 0.5)) octants_ |= 1U << octant;
 }
 
-const Block::Fine& Block::fine() const {
-  return fine_.get([&] {
-    const Level level = make_level(context_, context_.fine, context_.tree.surroundings(cell_), cell_);
-    float* const sources = context_.arena.allocate(level.source_floats() + far_floats);
-    return std::make_unique<const Fine>(Fine{write_level(level, sources, sources + level.source_floats()),
-                                             level.far.f_error, level.far.gradient_error});
+// Whoever asks first finds the same.
+std::uint64_t Block::surface(int octant) const {
+  if (!(octants_ >> octant & 1)) return 0;
+  auto& slots = surface_[static_cast<std::size_t>(octant)];
+  if (!(surface_known_.load(std::memory_order_acquire) >> octant & 1)) {
+    slots.store(surface_slots(context_, coarse().level, octant), std::memory_order_relaxed);
+    surface_known_.fetch_or(static_cast<std::uint8_t>(1U << octant), std::memory_order_release);
+  }
+  return slots.load(std::memory_order_relaxed);
+}
+
+template <class Make>
+const BlockLevel& Block::level(const Lazy<BlockLevel>& kept, LevelCache& cache, const Make& make) const {
+  if (const BlockLevel* ready = kept.peek()) return *ready;
+  if (BlockArena::bytes_of_all() >= context_.kept_bytes) return cache.get({context_.tracer, this}, make);
+  return kept.get([&] { return std::make_unique<const BlockLevel>(make(context_.arena)); });
+}
+
+const BlockLevel& Block::coarse() const {
+  thread_local LevelCache cache;
+  return level(coarse_, cache, [&](auto& memory) {
+    BlockLevel coarse =
+        write_level(make_level(context_, context_.coarse, context_.tree.coarse_surroundings(cell_), cell_), memory);
+    coarse.level.f_error = static_cast<float>(1.0001 * coarse.f_error);
+    coarse.level.g_error = static_cast<float>(1.0001 * coarse.gradient_error);
+    return coarse;
+  });
+}
+
+const BlockLevel& Block::fine() const {
+  thread_local LevelCache cache;
+  return level(fine_, cache, [&](auto& memory) {
+    return write_level(make_level(context_, context_.fine, context_.tree.surroundings(cell_), cell_), memory);
   });
 }
 

@@ -1,34 +1,38 @@
-// What tracing needs of one cell: near sources, the far field, and polynomials that tell where surface can be.
+// What tracing needs of one cell: near sources, the far field, and where in it surface can be.
 #pragma once
 
-#include <optional>
+#include <array>
+#include <atomic>
+#include <cstdint>
 #include <span>
 
 #include "field/math/box3.h"
 #include "field/trace/block_arena.h"
 #include "field/trace/block_kernels.h"
+#include "field/trace/block_level.h"
 #include "field/trace/cell_tree.h"
 #include "field/trace/lazy.h"
-#include "field/trace/patches.h"
 
 namespace marrow {
 
-/// Coordinates of the block: x = (p - center) / half. The sources with which roots are decided are gathered when the
-/// first ray needs them; safe to use from many threads.
+class LevelCache;
+
+/// Coordinates of the block: x = (p - center) / half. Its levels are made when the first ray needs them; safe to use
+/// from many threads.
 class Block {
  public:
   struct Context {
     std::span<const Piece> pieces;  ///< in the order of the source tree
     const CellTree& tree;
     const PieceCutter& cutter;
-    const NearFar& coarse;             ///< errors of the sources that polynomials are made from
-    const NearFar& fine;               ///< errors of the fine level
-    const LatticeError (&lattice)[2];  ///< of curves, and of points
+    const NearFar& coarse;  ///< errors of the coarse level
+    const NearFar& fine;    ///< errors of the fine level
     const IsoCurve& iso;
     const BlockKernels& kernels;
     int degree;
-    BlockArena& arena;  ///< holds what blocks are made of
-    bool polynomials;   ///< see PatchSource
+    BlockArena& arena;       ///< holds what blocks are made of
+    std::size_t kept_bytes;  ///< see TraceOptions
+    std::uint64_t tracer;    ///< a number of its own for every tracer of the process
   };
   /// The context must outlive the block.
   Block(const Context&, const CellTree::Cell&);
@@ -36,28 +40,28 @@ class Block {
   Block& operator=(const Block&) = delete;
 
   const BlockView& view() const { return view_; }
+  /// No octant can hold surface.
+  bool empty() const { return octants_ == 0; }
   const Vec3d& center() const { return cell_.center; }
   double half() const { return cell_.half; }
-  /// Around all surface in the cell; empty when there is none.
-  const Box3& box() const { return box_; }
 
-  /// What is rendered, and certified bounds of its difference from the exact field, over the cell.
-  struct Fine {
-    FieldLevel level;
-    double f_error = 0, gradient_error = 0;
-  };
-  const Fine& fine() const;
-  const Fine* fine_if_made() const { return fine_.peek(); }
+  /// Kept as long as the levels of all blends fit into a certain memory; else good until this thread asks another block
+  /// for the same one. They are the same in either case.
+  const BlockLevel& coarse() const;
+  const BlockLevel& fine() const;
+  const BlockLevel* fine_if_kept() const { return fine_.peek(); }
 
  private:
   const Context& context_;
   CellTree::Cell cell_;
-  Box3 box_;
-  FieldLevel coarse_;
-  PatchSource source_;
-  std::optional<OctantPatches> octants_;
   BlockView view_;
-  Lazy<Fine> fine_;
+  template <class Make>
+  const BlockLevel& level(const Lazy<BlockLevel>& kept, LevelCache&, const Make&) const;
+  Lazy<BlockLevel> coarse_, fine_;
+  std::uint64_t surface(int octant) const;
+  unsigned octants_ = 0;  // a bit for each that may hold surface
+  mutable std::array<std::atomic<std::uint64_t>, 8> surface_{};
+  mutable std::atomic<std::uint8_t> surface_known_ = 0;  // a bit for each octant
 };
 
 }  // namespace marrow

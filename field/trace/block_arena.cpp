@@ -24,6 +24,7 @@ float* BlockArena::allocate(std::size_t float_count) {
     next_ = static_cast<std::byte*>(chunk.get());
     left_ = size;
     total_ += size;
+    all_ += size;
     chunks_.push_back(std::move(chunk));
   }
   auto* result = reinterpret_cast<float*>(next_);

@@ -2,6 +2,7 @@
 // Blocks come by the ten thousand while rays wait; one page fault for each 4 KiB of them costs more than filling them.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <mutex>
@@ -14,6 +15,12 @@ class BlockArena {
   /// 64-byte aligned; lives as long as the arena. Safe to call from many threads.
   float* allocate(std::size_t float_count);
   std::size_t bytes() const;
+  /// Of all arenas together.
+  static std::size_t bytes_of_all() { return all_.load(std::memory_order_relaxed); }
+  ~BlockArena() { all_ -= total_; }
+  BlockArena() = default;
+  BlockArena(const BlockArena&) = delete;
+  BlockArena& operator=(const BlockArena&) = delete;
 
  private:
   struct Free {
@@ -24,6 +31,7 @@ class BlockArena {
   std::vector<Chunk> chunks_;
   std::byte* next_ = nullptr;
   std::size_t left_ = 0, total_ = 0;
+  static inline std::atomic<std::size_t> all_ = 0;
 };
 
 }  // namespace marrow

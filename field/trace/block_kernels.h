@@ -21,47 +21,30 @@ inline constexpr int far_floats = far_monomials * 4;  ///< (f, Gx, Gy, Gz) for e
 
 /// One representation of the field in a block: f = sum w d^-m + polynomial, G = grad_S f likewise with w tau.
 struct FieldLevel {
-  const float* sources = nullptr;  ///< curve groups, then point groups; 64-byte aligned
-  int curve_groups = 0;            ///< of exponent m = degree
-  int point_groups = 0;            ///< of exponent m = degree - 1
-  const float* far = nullptr;      ///< far_floats coefficients
-  float f_error = 0, g_error = 0;  ///< added to f and |G| wherever "outside" is to be proved
+  const float* sources = nullptr;        ///< curve groups, then point groups; 64-byte aligned
+  int curve_groups = 0;                  ///< of exponent m = degree
+  int point_groups = 0;                  ///< of exponent m = degree - 1
+  const float* far = nullptr;            ///< far_floats coefficients
+  float f_error = 0, g_error = 0;        ///< added to f and |G| wherever "outside" is to be proved
+  float far_slope = 0, far_g_slope = 0;  ///< |derivative| of the far f and G along any line, at most
+  float far_bend = 0, far_g_bend = 0;    ///< the same of |second derivative| / 2
 };
 
-/// Boxes in the eight octants of a cube, x the lowest bit, in coordinates of a block or a tile.
-struct alignas(32) OctantBoxes {
-  float lower[3][8], upper[3][8];
-  unsigned present = 0;  ///< a bit for each octant that has a box
-};
-
-/// A cube of a block in which surface may be: a polynomial of the whole field with certified errors.
-struct Patch {
-  enum class Kind { Empty, Smooth, Sources, Divided };
-  Kind kind = Kind::Empty;  ///< Sources: no useful polynomial, the coarse level must be asked
-  /// Surface is only in this box and where normal . x <= offset, in block coordinates.
-  float lower[3], upper[3], normal[3], offset;
-  float center[3], half;
-  float f_error, g_error;  ///< of the polynomial against the exact field, over the cube
-  float polynomial[far_floats];
-  const struct Octants* octants = nullptr;  ///< of Divided
-};
-
-/// The octants of a block or of a patch; those present are made when the first ray comes.
-struct Octants {
-  OctantBoxes boxes;
-  const Patch& (*patch)(const Octants&, int octant);
-};
-
-/// What the kernels read of a block. The patches, and where they fail the coarse level, find where the surface can be;
-/// the fine level is the field that is rendered.
+/// What the kernels read of a block. The coarse level finds where the surface can be; the fine level is the field that
+/// is rendered.
 struct BlockView {
-  const Octants* octants = nullptr;
-  FieldLevel coarse;
-  const FieldLevel& (*make_fine)(const void* owner) = nullptr;  ///< made when it is first needed
+  /// For an octant of the block (x the lowest bit) a bit for each of its 4 x 4 x 4 slots, x + 4 y + 16 z, that may hold
+  /// surface.
+  std::uint64_t (*find_surface)(const void* owner, int octant) = nullptr;
+  /// Made when they are needed; good until the same is asked of another block.
+  const FieldLevel& (*make_coarse)(const void* owner) = nullptr;
+  const FieldLevel& (*make_fine)(const void* owner) = nullptr;
   const void* owner = nullptr;
   int degree = 4;
   IsoCurve::View iso;
 
+  std::uint64_t surface(int octant) const { return find_surface(owner, octant); }
+  const FieldLevel& coarse() const { return make_coarse(owner); }
   const FieldLevel& fine() const { return make_fine(owner); }
 };
 
@@ -75,7 +58,8 @@ struct Root {
   bool hit = false;
   float undecided = std::numeric_limits<float>::infinity();  ///< where the first gap too short to decide was skipped
   int evaluations = 0;
-  bool enters_inside = false;  ///< a hit at t0, because the field is clearly above 1 there
+  bool begins_outside = false;  ///< the ray is known to be outside before the hit, or to have been before t0
+  bool enters_inside = false;   ///< a hit, but the field is clearly above 1 where surface can first be in the block
 };
 
 /// Gaps along a ray shorter than this times the distance to the nearest source are not decided.
@@ -105,34 +89,18 @@ struct OctantBounds {
   float thinness = 0;                     ///< 1 / radius of the thinnest piece within four of its radii of the ball
 };
 
-/// The error of a lattice's polynomial for one source at the distance d from the centre of a cube, both over its half
-/// side: at most field * (d^2 - offset)^-((m+5)/2) in f and gradient * tau * (d^2 - offset)^-((m+6)/2) in |G|, from
-/// d^2 = nearest on. See lattice.h.
-struct LatticeError {
-  static constexpr float nearest = 9, offset = 2.6F;
-  float field, gradient;
-};
-
 /// Of a field over a cube.
 struct CubeBounds {
   float f_high = 0, g_high = 0, f_low = 0;  ///< the upper ones when nothing touches
   bool touches = false;                     ///< a source comes into the ball around the cube
-  float f_error = 0, g_error = 0;           ///< of the polynomial through its lattice
 };
 
-inline constexpr int lattice_stride = 128;  ///< nodes of a lattice in whole vectors
-
-/// How far the field can be above the values at all eight corners of a cell of the lattice, and below them.
-struct LatticeRaise {
-  float field, gradient;
-  float surely_inside;  ///< from this f on all is inside
-};
-
-/// The stretches of a ray in boxes, nearest first.
-struct Stretches {
-  alignas(32) float begin[8], end[8];  ///< by octant
+/// The stretches of a ray in the slots of a cube, nearest first. They follow each other without gaps where slots do.
+struct Walk {
+  static constexpr int most = 10;  ///< a line crosses three planes within the cube along each axis
+  float begin[most], end[most];
+  int slot[most];
   int count;
-  int order[8];  ///< octants that the ray meets
 };
 
 /// Pieces of one kind against the ball around a cube.
@@ -156,21 +124,17 @@ struct FarSums {
 struct BlockKernels {
   struct Query {
     float t0, t1;
-    bool any;              ///< any root will do
-    bool from_surface;     ///< the ray begins at t0, perhaps beside the surface
-    bool leaving = false;  ///< the ray is inside at t0, and what is asked for is where it leaves
+    bool any;                   ///< any root will do
+    bool from_surface;          ///< the ray begins at t0, perhaps beside the surface
+    bool from_outside = false;  ///< the ray is known to have been outside before t0
+    bool leaving = false;       ///< the ray is inside at t0, and what is asked for is where it leaves
   };
   /// The first t in [t0, t1] where the corrected field reaches 1.
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
   PointField (*point_field)(const FieldLevel&, int degree, const float point[3]);
-  void (*stretches)(const OctantBoxes&, const LocalRay&, float t0, float t1, Stretches&);
-  /// `errors`: of curves, and of points.
-  CubeBounds (*cube_bounds)(const FieldLevel&, int degree, const LatticeError errors[2], const float center[3],
-                            float half);
-  /// (f, Gx, Gy, Gz) at the nodes of the lattice (lattice.h) of a cube; room for lattice_stride nodes.
-  void (*lattice_values)(const FieldLevel&, int degree, const float center[3], float half, float* values);
-  /// Bit i + 4 j + 16 k for each cell of the lattice that may hold surface, from the values at its nodes.
-  std::uint64_t (*lattice_marks)(const IsoCurve::View&, const LatticeRaise&, const float* values);
+  /// Through the slots of a set, in coordinates of the cube of 4 x 4 x 4 slots, [-1, 1]^3.
+  void (*walk)(std::uint64_t slots, const LocalRay&, float t0, float t1, Walk&);
+  CubeBounds (*cube_bounds)(const FieldLevel&, int degree, const float center[3], float half);
   /// Moments of groups of inverted sources (y, field at the origin, tau), without the constants of FarMoments.
   void (*far_moments)(const float* groups, int count, float* f, float* potential);
   /// Sets a bit of near[k] for each lane of group k that is not far.

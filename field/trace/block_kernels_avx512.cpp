@@ -11,10 +11,9 @@ namespace {
 #include "field/trace/kernels/iso.h"
 #include "field/trace/kernels/march.h"
 #include "field/trace/kernels/search.h"
-#include "field/trace/kernels/patch_ray.h"
+#include "field/trace/kernels/walk.h"
 #include "field/trace/kernels/first_root.h"
 #include "field/trace/kernels/points.h"
-#include "field/trace/kernels/lattice.h"
 #include "field/trace/kernels/cube.h"
 #include "field/trace/kernels/moments.h"
 #include "field/trace/kernels/split.h"
@@ -22,8 +21,8 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root,    point_field, stretches, cube_bounds,  lattice_values,
-                                        lattice_marks, far_moments, far_split, octant_bounds};
+  static constexpr BlockKernels kernels{first_root,  point_field, walk,         cube_bounds,
+                                        far_moments, far_split,   octant_bounds};
   return kernels;
 }
 

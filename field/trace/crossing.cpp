@@ -16,7 +16,8 @@ constexpr double inf = std::numeric_limits<double>::infinity();
 
 class Search {
  public:
-  Search(const FieldTree& tree, const Ray& ray, bool any) : tree_(tree), ray_(ray), any_(any) {}
+  Search(const FieldTree& tree, std::uint32_t record, const Ray& ray, bool any)
+      : tree_(tree), record_(record), ray_(ray), any_(any) {}
 
   CrossingSearch run(double begin, double end) {
     const bool starts_inside = inside(begin), ends_inside = inside(end);
@@ -49,7 +50,7 @@ class Search {
 
   double at(double t) {
     ++found_.evaluations;
-    return value(tree_, ray_.at(t));
+    return value(tree_, ray_.at(t), record_);
   }
   bool inside(double t) { return at(t) >= 1; }
 
@@ -58,8 +59,10 @@ class Search {
     const OnRay along = OnRay::variable(t, 0);
     const Vec3d& o = ray_.origin;
     const Vec3d& d = ray_.direction;
-    return value(tree_, Vec3<OnRay>{OnRay(o.x) + along * OnRay(d.x), OnRay(o.y) + along * OnRay(d.y),
-                                    OnRay(o.z) + along * OnRay(d.z)});
+    return value(
+        tree_,
+        Vec3<OnRay>{OnRay(o.x) + along * OnRay(d.x), OnRay(o.y) + along * OnRay(d.y), OnRay(o.z) + along * OnRay(d.z)},
+        record_);
   }
 
   // Where to divide the piece, or nothing when it is settled.
@@ -120,6 +123,7 @@ class Search {
   }
 
   const FieldTree& tree_;
+  std::uint32_t record_;
   const Ray& ray_;
   bool any_;
   CrossingSearch found_;
@@ -127,8 +131,9 @@ class Search {
 
 }  // namespace
 
-CrossingSearch find_crossing(const FieldTree& tree, const Ray& ray, double begin, double end, bool any) {
-  return Search(tree, ray, any).run(begin, end);
+CrossingSearch find_crossing(const FieldTree& tree, std::uint32_t record, const Ray& ray, double begin, double end,
+                             bool any) {
+  return Search(tree, record, ray, any).run(begin, end);
 }
 
 }  // namespace marrow

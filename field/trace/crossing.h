@@ -18,6 +18,7 @@ struct CrossingSearch {
 };
 
 /// Searches begin <= t <= end for the first change of side; with `any`, for any. A crossing is placed to some ulps.
-CrossingSearch find_crossing(const FieldTree&, const Ray&, double begin, double end, bool any);
+/// Of the field below `record`, or of FieldTree::whole.
+CrossingSearch find_crossing(const FieldTree&, std::uint32_t record, const Ray&, double begin, double end, bool any);
 
 }  // namespace marrow

@@ -8,6 +8,14 @@
 #include "field/math/elementary.h"
 
 namespace marrow {
+namespace {
+
+// Longer pieces need fewer quadrature nodes in all, but bounds treat all of a piece as near as its nearest point:
+// 10,000 hairs are built in 9.9 s of processor time at 2, in 11.7 s at 1 and in 9.8 s at 3, with rays as fast; 867
+// segments have 8 % more cells at 3.
+constexpr double longest_in_radii = 2;
+
+}  // namespace
 
 double distance(const Piece& piece, const Vec3d& p) {
   const Vec3d along = piece.to - piece.from, w = p - piece.from;
@@ -66,13 +74,13 @@ std::vector<Piece> PieceCutter::cut(const BlendField& blend) const {
     const SegmentSkeleton& s = blend.segments.skeletons[i];
     Piece whole = segment_piece(s.from, s.to, s.radius_from, s.radius_to);
     whole.primitive = static_cast<std::uint32_t>(i);
-    // Steps of at most one radius, from the thick end on; equal where the radius is constant.
+    // Steps of at most two radii, from the thick end on; equal where the radius is constant.
     const bool reversed = s.radius_to > s.radius_from;
     double done = 0;
     while (done < 1) {
       const double at = reversed ? 1 - done : done;
       const double radius = s.radius_from + (s.radius_to - s.radius_from) * at;
-      const double left = 1 - done, step_length = std::max(radius, 1e-5 * whole.radius);
+      const double left = 1 - done, step_length = std::max(longest_in_radii * radius, 1e-5 * whole.radius);
       const double count = std::ceil(left * whole.length / step_length - 1e-9);
       const double step = count <= 1 ? left : left / count;
       const double next = count <= 1 ? 1 : done + step;

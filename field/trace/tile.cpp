@@ -3,17 +3,38 @@
 #include <utility>
 
 #include "field/trace/block.h"
-#include "field/trace/tile_boxes.h"
 
 namespace marrow {
+
+std::uint64_t TileContent::slots_of_cell(int slot) const {
+  const int octant = path_of(slot).outer;
+  if (!(large_cells >> octant & 1)) return std::uint64_t{1} << slot;
+  std::uint64_t slots = 0;
+  for (int inner = 0; inner < 8; ++inner) slots |= std::uint64_t{1} << slot_at({octant, inner});
+  return slots;
+}
+
+std::uint64_t TileContent::occupied() const {
+  std::uint64_t slots = tiles;
+  for (std::uint64_t left = cells; left != 0; left &= left - 1) slots |= slots_of_cell(std::countr_zero(left));
+  return slots;
+}
 
 Tile::Tile(const TilePlace& place, Surroundings coarse, const TileContent& content)
     : place_(place),
       content_(content),
+      occupied_(content.occupied()),
       coarse_(std::move(coarse)),
-      boxes_(std::make_unique<const TileBoxes>(place_, content_)),
       blocks_(new Lazy<Block>[static_cast<std::size_t>(std::popcount(content.cells))]),
-      children_(new Lazy<Tile>[static_cast<std::size_t>(std::popcount(content.tiles))]) {}
+      children_(new Lazy<Tile>[static_cast<std::size_t>(std::popcount(content.tiles))]) {
+  for (std::uint64_t left = content.occupied(); left != 0; left &= left - 1) {
+    const Vec3d h = Vec3d{1, 1, 1} * (place.half / 4);
+    const Vec3d center = slot_center(place.center, place.half, std::countr_zero(left));
+    content_box_.include({center - h, center + h});
+  }
+}
+
+void Tile::note_empty(int slot) const { occupied_.fetch_and(~content_.slots_of_cell(slot), std::memory_order_relaxed); }
 
 Tile::~Tile() = default;
 

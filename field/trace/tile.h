@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstdint>
 #include <memory>
@@ -13,7 +14,6 @@
 namespace marrow {
 
 class Block;
-class TileBoxes;
 
 /// Where a tile is and what it belongs to.
 struct TilePlace {
@@ -34,6 +34,11 @@ struct TilePlace {
 struct TileContent {
   std::uint64_t cells = 0, tiles = 0;  ///< a bit for each slot
   std::uint8_t large_cells = 0;        ///< a bit for each octant that is one cell
+
+  /// All slots that hold something.
+  std::uint64_t occupied() const;
+  /// The slots of the cell that goes by this one.
+  std::uint64_t slots_of_cell(int slot) const;
 };
 
 /// Blocks of cells and smaller tiles are made when asked for.
@@ -45,13 +50,17 @@ class Tile {
 
   const TilePlace& place() const { return place_; }
   const TileContent& content() const { return content_; }
+  /// The slots that hold something, less those noted as empty.
+  std::uint64_t occupied() const { return occupied_.load(std::memory_order_relaxed); }
+  /// A block has been found to hold no surface: rays need not ask for it again.
+  void note_empty(int slot) const;
+  /// Around all that the tile holds.
+  const Box3& content_box() const { return content_box_; }
   const Surroundings& coarse() const { return coarse_; }
   const Lazy<Surroundings>& fine() const { return fine_; }
   const Lazy<Surroundings>& fine_of_octant(int octant) const { return octants_[static_cast<std::size_t>(octant)]; }
   /// Of a slot that has one.
   const Lazy<Block>& block(int slot) const { return blocks_[rank(content_.cells, slot)]; }
-  /// Where in it surface can be.
-  const TileBoxes& boxes() const { return *boxes_; }
   const Lazy<Tile>& child(int slot) const { return children_[rank(content_.tiles, slot)]; }
   /// Of this tile itself, without its blocks and smaller tiles.
   std::size_t bytes() const;
@@ -63,9 +72,10 @@ class Tile {
 
   TilePlace place_;
   TileContent content_;
+  mutable std::atomic<std::uint64_t> occupied_;
+  Box3 content_box_;
   Surroundings coarse_;
   Lazy<Surroundings> fine_;
-  std::unique_ptr<const TileBoxes> boxes_;
   std::array<Lazy<Surroundings>, 8> octants_;
   std::unique_ptr<Lazy<Block>[]> blocks_;
   std::unique_ptr<Lazy<Tile>[]> children_;

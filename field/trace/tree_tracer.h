@@ -1,12 +1,16 @@
 // Certified ray tracing of a tree of general nodes.
 //
-// An octree over the box that can hold surface: parts that bounds prove to be all outside or all inside are dropped,
-// the others are divided until the surface in them is one sheet to all appearances. Each cell keeps the tree restricted
-// to it. Along a ray, enclosures of the field and of its slope tell intervals without a root from those with exactly
-// one; what remains is halved.   [interval Newton isolation: Moore 1966; pruned programs: Keeter 2020]
+// Each member of a crisp union is traced by itself: the nearest hit of all is that of the union, seen from outside. For
+// each of them there is an octree over the box that can hold its surface: parts that bounds prove to be all outside or
+// all inside are dropped, the others are divided until the surface in them is one sheet to all appearances. Each cell
+// keeps the tree restricted to it. Of a union of very many, a member without operators is one cell. Along a ray,
+// enclosures of the field and of its slope tell intervals without a root from those with exactly one; what remains is
+// halved.   [interval Newton isolation: Moore 1966; pruned programs: Keeter 2020]
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -33,6 +37,8 @@ class TreeTracer {
   SurfacePoint surface_at(std::size_t cell, const Vec3d& position) const;
 
   const FieldTree& tree() const { return tree_; }
+  /// Of the leaf that counts most at a hit; invalid: the object's own.
+  MaterialId material_at(std::size_t cell, const Vec3d& position) const;
   /// Bounds of the surface.
   const Box3& bounds() const { return bounds_; }
   std::size_t bytes() const;
@@ -40,10 +46,14 @@ class TreeTracer {
  private:
   struct Cell {
     Box3 box;
-    FieldTree tree;  ///< equal to the whole tree in the box and a little beyond
+    std::uint32_t member;  ///< record of the whole tree
+    /// Equal to the member in the box and a little beyond; may serve several cells. Null: the member itself.
+    std::shared_ptr<const FieldTree> tree;
   };
-  TreeTracer(FieldTree tree, const Box3& bounds) : tree_(std::move(tree)), bounds_(bounds) {}
-  void divide();
+  explicit TreeTracer(FieldTree tree) : tree_(std::move(tree)) {}
+  void divide(const Member&);
+  template <class Use>
+  auto with_field_near(const Cell&, const Vec3d& p, const Use&) const;
 
   FieldTree tree_;
   Box3 bounds_;

@@ -1,6 +1,8 @@
 #include "field/tree/field_tree.h"
 
 #include <algorithm>
+#include <concepts>
+#include <iterator>
 #include <utility>
 
 #include "field/blend/blend_bounds.h"
@@ -76,10 +78,11 @@ std::size_t leaf_count(const FieldTree& tree) {
   return count;
 }
 
+namespace {
+
 // From the root down each node learns the level that its parents care about, the least of several; then boxes go up.
-Box3 surface_bounds(const FieldTree& tree) {
+std::vector<Box3> reaches(const FieldTree& tree) {
   const auto records = tree.records();
-  if (records.empty()) return {};
   std::vector<double> level(records.size(), inf);
   level.back() = 1;
   for (std::size_t i = records.size(); i-- > 0;) {
@@ -93,10 +96,32 @@ Box3 surface_bounds(const FieldTree& tree) {
     for (const std::uint32_t c : tree.children(records[i])) boxes.push_back(reach[c]);
     reach[i] = reach_of(tree.node(records[i]), boxes, level[i]);
   }
-  return reach.back();
+  return reach;
+}
+
+}  // namespace
+
+Box3 surface_bounds(const FieldTree& tree) { return tree.records().empty() ? Box3{} : reaches(tree).back(); }
+
+std::vector<Member> members(const FieldTree& tree) {
+  const auto records = tree.records();
+  if (records.empty()) return {};
+  const std::vector<Box3> reach = reaches(tree);
+  const auto is_leaf = [&](std::uint32_t i) {
+    while (std::holds_alternative<AffineWarp>(tree.node(records[i]))) i = tree.children(records[i])[0];
+    return records[i].child_count == 0;
+  };
+  const FieldTree::Record& root = records.back();
+  if (!std::holds_alternative<CrispUnion>(tree.node(root))) return {{tree.root(), reach.back(), is_leaf(tree.root())}};
+  std::vector<Member> all;
+  for (const std::uint32_t c : tree.children(root)) all.push_back({c, reach[c], is_leaf(c)});
+  return all;
 }
 
 namespace {
+
+template <class Node, class... Kinds>
+constexpr bool is_any_of = (std::same_as<Node, Kinds> || ...);
 
 // What a node is inside the box: bounds, and the record in the new tree that stands for it.
 struct Part {
@@ -134,31 +159,80 @@ class Restriction {
   }
 
  private:
-  // A union of one is that one.
-  static bool is_idle_with_one(const TreeNode& node) { return std::holds_alternative<CrispUnion>(node); }
+  // Operators that give a single operand back as it is.
+  static bool is_idle_with_one(const TreeNode& node) {
+    return std::visit(
+        []<class Node>(const Node&) {
+          return is_any_of<Node, CrispUnion, Sum, Ricci, Intersection, Difference, SoftUnion, SoftIntersection,
+                           SoftDifference, SharpUnion, SharpIntersection, SharpDifference>;
+        },
+        node);
+  }
 
   // The operands that count. An operator that needs all of its operands in place gets zeros as they are.
   void select(const TreeNode& node, std::span<const Part> children) {
     kept_.clear();
+    if (std::none_of(children.begin(), children.end(), [](const Part& c) { return c.record != Part::none; })) return;
     std::visit(
-        [&]<class Node>(const Node&) {
-          double least = -inf;  // an operand below this is never the largest
-          if constexpr (std::same_as<Node, CrispUnion>)
-            for (const Part& c : children) least = std::max(least, c.value.lo);
-          bool any = false;
-          for (const Part& c : children) any = any || c.record != Part::none;
-          if (!any) return;
-          for (const Part& c : children) {
-            if constexpr (requires { requires Node::ignores_zeros; }) {
-              if (c.record == Part::none || c.value.hi < least) continue;
-              kept_.push_back(c);
-            } else {
-              kept_.push_back(c.record == Part::none ? nothing() : c);
-            }
-          }
+        [&]<class Node>(const Node& n) {
+          if constexpr (std::same_as<Node, CrispUnion>) keep_largest(children);
+          else if constexpr (std::same_as<Node, Intersection>)
+            keep_least(children, [](const Part& c) { return c.value; });
+          else if constexpr (std::same_as<Node, Difference>) keep_rest(children);
+          else if constexpr (is_any_of<Node, SoftDifference, SharpDifference>) keep_touching(n, children);
+          else if constexpr (requires { requires Node::ignores_zeros; })
+            std::copy_if(children.begin(), children.end(), std::back_inserter(kept_),
+                         [](const Part& c) { return c.record != Part::none; });
+          else
+            for (const Part& c : children) kept_.push_back(in_place(c));
         },
         node);
   }
+
+  void keep_largest(std::span<const Part> children) {
+    double least = -inf;  // an operand below this is never the largest
+    for (const Part& c : children) least = std::max(least, c.value.lo);
+    for (const Part& c : children)
+      if (c.record != Part::none && c.value.hi >= least) kept_.push_back(c);
+  }
+
+  // Of terms of which the least counts. Where any is 0 nothing is left.
+  void keep_least(std::span<const Part> children, const auto& term) {
+    double most = inf;  // an operand above this is never the least
+    for (const Part& c : children) most = std::min(most, term(c).hi);
+    for (const Part& c : children)
+      if (term(c).lo <= most) kept_.push_back(in_place(c));
+  }
+
+  // min(f_1, 2 - f_i): several i whose field is 0 count as one.
+  void keep_rest(std::span<const Part> children) {
+    double most = children[0].value.hi;
+    for (const Part& c : children.subspan(1)) most = std::min(most, (Interval(2) - c.value).hi);
+    if (children[0].record == Part::none) return;
+    kept_.push_back(children[0]);
+    bool has_zero = false;
+    for (const Part& c : children.subspan(1)) {
+      const bool is_zero = c.record == Part::none;
+      if ((Interval(2) - c.value).lo > most || (is_zero && has_zero)) continue;
+      has_zero = has_zero || is_zero;
+      kept_.push_back(in_place(c));
+    }
+  }
+
+  // What is folded onto the first operand without touching it anywhere in the box.
+  void keep_touching(const auto& node, std::span<const Part> children) {
+    if (children[0].record == Part::none) return;
+    kept_.push_back(children[0]);
+    Interval rest = children[0].value;
+    for (const Part& c : children.subspan(1)) {
+      if (node.spares(rest, c.value)) continue;
+      const Interval both[] = {rest, c.value};
+      rest = node.value(std::span<const Interval>(both));
+      kept_.push_back(in_place(c));
+    }
+  }
+
+  Part in_place(const Part& c) { return c.record == Part::none ? nothing() : c; }
 
   // An empty union is 0 everywhere.
   Part nothing() {
@@ -184,14 +258,14 @@ class Restriction {
 
 }  // namespace
 
-FieldTree restricted(const FieldTree& tree, const Box3& box) {
+FieldTree restricted(const FieldTree& tree, const Box3& box, std::uint32_t below) {
   const Vec3<Interval> p{{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
   Restriction restriction(tree);
   tree::Machine<Interval, Part> machine;
-  const Part root =
-      machine.run(tree, p, Part{}, [&](std::uint32_t record, const Vec3<Interval>& at, std::span<const Part> children) {
-        return restriction.add(record, at, children);
-      });
+  const Part root = machine.run(tree, below, p, Part{},
+                                [&](std::uint32_t record, const Vec3<Interval>& at, std::span<const Part> children) {
+                                  return restriction.add(record, at, children);
+                                });
   return std::move(restriction).tree(root.record);
 }
 

@@ -30,10 +30,12 @@ class FieldTree {
   /// `nodes` may be shared between trees. Preconditions: children of a record stand before it; the last is the root.
   FieldTree(std::shared_ptr<const std::vector<TreeNode>> nodes, std::vector<Record> records,
             std::vector<std::uint32_t> children);
+  FieldTree() = default;  ///< 0 everywhere
 
   const TreeNode& node(const Record& r) const;
   std::span<const Record> records() const { return records_; }
   std::uint32_t root() const { return static_cast<std::uint32_t>(records_.size() - 1); }
+  static constexpr std::uint32_t whole = 0xffffffff;  ///< stands for the root
   std::span<const std::uint32_t> children(const Record& r) const {
     return std::span(children_).subspan(r.first_child, r.child_count);
   }
@@ -47,15 +49,23 @@ class FieldTree {
 
 /// The field at p; 1 on the surface, larger inside. X: double, Jet<double, 3>, HessianJet, Interval,
 /// Jet<Interval, 1>, Jet<Interval, 3>. Enclosures hold for every point of the box or ray piece that p spans.
+/// With a record, of what stands below that alone, in its coordinates.
 template <Number X>
-X value(const FieldTree&, const Vec3<X>& p);
+X value(const FieldTree&, const Vec3<X>& p, std::uint32_t record = FieldTree::whole);
 
 /// The same field inside a box, with less: nodes that are 0 there are gone, and so are operands that never count.
 /// A tree without records is 0 all over the box.
-FieldTree restricted(const FieldTree&, const Box3&);
+FieldTree restricted(const FieldTree&, const Box3&, std::uint32_t record = FieldTree::whole);
 
 /// Outside this box the field is below 1. Infinite where no bound is found.
 Box3 surface_bounds(const FieldTree&);
+/// The same for each child of the root, where that is a crisp union of several; else for the root alone.
+struct Member {
+  std::uint32_t record;
+  Box3 bounds;
+  bool is_leaf;  ///< a primitive or a blend, at most placed
+};
+std::vector<Member> members(const FieldTree&);
 
 /// Primitives in the tree, those of blends among them; a shared node counts once.
 std::size_t leaf_count(const FieldTree&);
@@ -67,9 +77,9 @@ struct LeafWeight {
   double weight;
   Vec3d local;  ///< p in the leaf's coordinates
 };
-std::vector<LeafWeight> leaf_weights(const FieldTree&, const Vec3d& p);
+std::vector<LeafWeight> leaf_weights(const FieldTree&, const Vec3d& p, std::uint32_t record = FieldTree::whole);
 
 /// Material of the leaf with the largest weight, inside a blend of its strongest primitive; invalid: the object's own.
-MaterialId strongest_material(const FieldTree&, const Vec3d& p);
+MaterialId strongest_material(const FieldTree&, const Vec3d& p, std::uint32_t record = FieldTree::whole);
 
 }  // namespace marrow

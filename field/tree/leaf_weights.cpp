@@ -16,8 +16,25 @@ struct Visit {
 
 constexpr std::size_t nothing = ~std::size_t{0};
 
-// f_i |dF/df_i| of each operand.
+std::vector<double> largest_alone(std::span<const double> f) {
+  std::vector<double> share(f.size(), 0);
+  share[static_cast<std::size_t>(std::max_element(f.begin(), f.end()) - f.begin())] = 1;
+  return share;
+}
+
+// On a plateau, or inside a skeleton: the largest operand alone.
+std::vector<double> normalised(std::vector<double> share, std::span<const double> f) {
+  double total = 0;
+  for (const double s : share) total += s;
+  if (!(total > 0) || !(total < Box3::inf)) return largest_alone(f);
+  for (double& s : share) s /= total;
+  return share;
+}
+
+// f_i |dF/df_i| of each operand: for each of them all derivatives anew, but where they are known to be 1 or 0.
 std::vector<double> shares(const TreeNode& node, std::span<const double> f) {
+  if (std::holds_alternative<CrispUnion>(node)) return largest_alone(f);
+  if (std::holds_alternative<Sum>(node)) return normalised({f.begin(), f.end()}, f);
   std::vector<Jet<double, 1>> operands(f.begin(), f.end());
   std::vector<double> share(f.size(), 0);
   for (std::size_t i = 0; i < f.size(); ++i) {
@@ -27,32 +44,26 @@ std::vector<double> shares(const TreeNode& node, std::span<const double> f) {
     operands[i].slope[0] = 0;
     share[i] = f[i] * std::fabs(F.slope[0]);
   }
-  double total = 0;
-  for (const double s : share) total += s;
-  if (!(total > 0) || !(total < Box3::inf)) {  // a plateau, or inside a skeleton: the largest operand alone
-    std::fill(share.begin(), share.end(), 0.0);
-    share[static_cast<std::size_t>(std::max_element(f.begin(), f.end()) - f.begin())] = total = 1;
-  }
-  for (double& s : share) s /= total;
-  return share;
+  return normalised(std::move(share), f);
 }
 
 }  // namespace
 
-std::vector<LeafWeight> leaf_weights(const FieldTree& tree, const Vec3d& p) {
+std::vector<LeafWeight> leaf_weights(const FieldTree& tree, const Vec3d& p, std::uint32_t below) {
   std::vector<Visit> visits;
   tree::Machine<double, std::size_t> machine;
   std::vector<double> values;
-  machine.run(tree, p, nothing, [&](std::uint32_t record, const Vec3d& at, std::span<const std::size_t> children) {
-    values.clear();
-    for (const std::size_t c : children) values.push_back(c == nothing ? 0 : visits[c].value);
-    visits.push_back({record,
-                      at,
-                      tree::value_of_node<double>(tree.node(tree.records()[record]), at, values),
-                      0,
-                      {children.begin(), children.end()}});
-    return visits.size() - 1;
-  });
+  machine.run(tree, below, p, nothing,
+              [&](std::uint32_t record, const Vec3d& at, std::span<const std::size_t> children) {
+                values.clear();
+                for (const std::size_t c : children) values.push_back(c == nothing ? 0 : visits[c].value);
+                visits.push_back({record,
+                                  at,
+                                  tree::value_of_node<double>(tree.node(tree.records()[record]), at, values),
+                                  0,
+                                  {children.begin(), children.end()}});
+                return visits.size() - 1;
+              });
   if (visits.empty() || !(visits.back().value > 0)) return {};
   visits.back().weight = 1;
   std::vector<LeafWeight> leaves;
@@ -73,8 +84,8 @@ std::vector<LeafWeight> leaf_weights(const FieldTree& tree, const Vec3d& p) {
   return leaves;
 }
 
-MaterialId strongest_material(const FieldTree& tree, const Vec3d& p) {
-  const std::vector<LeafWeight> leaves = leaf_weights(tree, p);
+MaterialId strongest_material(const FieldTree& tree, const Vec3d& p, std::uint32_t below) {
+  const std::vector<LeafWeight> leaves = leaf_weights(tree, p, below);
   if (leaves.empty()) return {};
   const LeafWeight& strongest = *std::max_element(
       leaves.begin(), leaves.end(), [](const LeafWeight& a, const LeafWeight& b) { return a.weight < b.weight; });

@@ -51,17 +51,17 @@ Vec3<X> point_of_children(const TreeNode& node, const Vec3<X>& p) {
       node);
 }
 
-/// Calls visit(record index, p, values of its children) -> value for every node that p's support test leaves, children
-/// first; `none` stands for the others. The stacks are kept between calls.
+/// Calls visit(record index, p, values of its children) -> value for `start` and every node below that p's support test
+/// leaves, children first; `none` stands for the others. The stacks are kept between calls.
 template <Number X, class Value>
 class Machine {
  public:
   template <class Visit>
-  Value run(const FieldTree& tree, const Vec3<X>& p, const Value& none, const Visit& visit) {
+  Value run(const FieldTree& tree, std::uint32_t start, const Vec3<X>& p, const Value& none, const Visit& visit) {
     frames_.clear();
     values_.clear();
     if (tree.records().empty()) return none;
-    enter(tree, tree.root(), p, none);
+    enter(tree, start == FieldTree::whole ? tree.root() : start, p, none);
     while (!frames_.empty()) {
       Frame& top = frames_.back();
       const FieldTree::Record& record = tree.records()[top.record];

@@ -9,6 +9,7 @@
 #include "field/math/box3.h"
 #include "field/number/functions.h"
 #include "field/tree/any_node.h"
+#include "field/tree/point_leaf.h"
 
 namespace marrow {
 
@@ -42,8 +43,8 @@ struct Extended<std::variant<Kinds...>, More...> {
 }  // namespace tree
 
 /// Any node of a compiled tree.
-struct TreeNode : tree::Extended<AnyNode, BlendLeaf, AffineWarp, CrispUnion>::type {
-  using Kinds = tree::Extended<AnyNode, BlendLeaf, AffineWarp, CrispUnion>::type;
+struct TreeNode : tree::Extended<AnyNode, BlendLeaf, PointLeaf, AffineWarp, CrispUnion>::type {
+  using Kinds = tree::Extended<AnyNode, BlendLeaf, PointLeaf, AffineWarp, CrispUnion>::type;
   using Kinds::Kinds;
 };
 

@@ -1,4 +1,5 @@
 // The field of a tree for every type of number.
+#include "field/blend/curvature.h"
 #include "field/tree/machine.h"
 
 namespace marrow {
@@ -32,44 +33,36 @@ thread_local bool BorrowedMachine<X>::is_taken_ = false;
 }  // namespace
 
 template <Number X>
-X value(const FieldTree& tree, const Vec3<X>& p) {
+X value(const FieldTree& tree, const Vec3<X>& p, std::uint32_t below) {
   BorrowedMachine<X> machine;
-  return machine.get().run(tree, p, X(0.0), [&](std::uint32_t record, const Vec3<X>& at, std::span<const X> children) {
-    return tree::value_of_node(tree.node(tree.records()[record]), at, children);
-  });
+  return machine.get().run(tree, below, p, X(0.0),
+                           [&](std::uint32_t record, const Vec3<X>& at, std::span<const X> children) {
+                             return tree::value_of_node(tree.node(tree.records()[record]), at, children);
+                           });
 }
 
-template double value(const FieldTree&, const Vec3<double>&);
-template Jet<double, 3> value(const FieldTree&, const Vec3<Jet<double, 3>>&);
-template HessianJet value(const FieldTree&, const Vec3<HessianJet>&);
-template Interval value(const FieldTree&, const Vec3<Interval>&);
-template Jet<Interval, 1> value(const FieldTree&, const Vec3<Jet<Interval, 1>>&);
-template Jet<Interval, 3> value(const FieldTree&, const Vec3<Jet<Interval, 3>>&);
+template double value(const FieldTree&, const Vec3<double>&, std::uint32_t);
+template Jet<double, 3> value(const FieldTree&, const Vec3<Jet<double, 3>>&, std::uint32_t);
+template HessianJet value(const FieldTree&, const Vec3<HessianJet>&, std::uint32_t);
+template Interval value(const FieldTree&, const Vec3<Interval>&, std::uint32_t);
+template Jet<Interval, 1> value(const FieldTree&, const Vec3<Jet<Interval, 1>>&, std::uint32_t);
+template Jet<Interval, 3> value(const FieldTree&, const Vec3<Jet<Interval, 3>>&, std::uint32_t);
 
 namespace tree {
 
-// Differences of the closed-form gradient: relative error about 1e-8, since no closed form of third derivatives of the
-// sums is at hand.
 HessianJet blend_value(const BlendField& blend, const Vec3<HessianJet>& p) {
-  const Vec3d at{p.x.value, p.y.value, p.z.value};
-  const BlendSample s = evaluate(blend, at);
-  const double step = 1e-5 * largest_radius(blend);
-  std::array<Vec3d, 3> row;
-  for (std::size_t i = 0; i < 3; ++i) {
-    Vec3d ahead = at, behind = at;
-    ahead[i] += step;
-    behind[i] -= step;
-    row[i] = (evaluate(blend, ahead).corrected_gradient - evaluate(blend, behind).corrected_gradient) *
-             (1 / (ahead[i] - behind[i]));
-  }
-  HessianJet r(s.corrected);
+  const HessianJet f = second_order_corrected(blend, {p.x.value, p.y.value, p.z.value});
+  HessianJet r(f.value);
   for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t i = 0; i < 3; ++i) r.slope[i] += s.corrected_gradient[a] * p[a].slope[i];
-    for (std::size_t k = 0; k < 6; ++k) {
-      const auto [i, j] = HessianJet::at[k];
-      r.curvature[k] += s.corrected_gradient[a] * p[a].curvature[k];
-      for (std::size_t b = 0; b < 3; ++b)
-        r.curvature[k] += 0.5 * (row[a][b] + row[b][a]) * p[a].slope[i] * p[b].slope[j];
+    for (std::size_t i = 0; i < 3; ++i) r.slope[i] += f.slope[a] * p[a].slope[i];
+    for (std::size_t k = 0; k < 6; ++k) r.curvature[k] += f.slope[a] * p[a].curvature[k];
+  }
+  for (std::size_t k = 0; k < 6; ++k) {
+    const auto [i, j] = HessianJet::at[k];
+    for (std::size_t m = 0; m < 6; ++m) {
+      const auto [a, b] = HessianJet::at[m];
+      r.curvature[k] += f.curvature[m] * p[a].slope[i] * p[b].slope[j];
+      if (a != b) r.curvature[k] += f.curvature[m] * p[b].slope[i] * p[a].slope[j];
     }
   }
   return r;

@@ -55,7 +55,7 @@ struct ProbeCommand {
   SceneInput scene;
   std::optional<std::string> object;
   std::filesystem::path points;  ///< "-": standard input
-  bool curvature = false;        ///< of one blend: the Hessian too
+  bool curvature = false;        ///< the Hessian too
 };
 
 struct InfoCommand {

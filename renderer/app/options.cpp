@@ -137,7 +137,8 @@ void describe(CLI::App& app, ProbeCommand& c) {
   add_scene(app, c.scene);
   app.add_option("--object", c.object, "Object to evaluate; may be left out if only one is a field")->type_name("NAME");
   add_path(app, "--points", c.points, "Points, one 'x y z' a line; - is standard input")->required();
-  app.add_flag("--curvature", c.curvature, "Of a single blend: Hessian of the sum, curvature of the surface too");
+  app.add_flag("--curvature", c.curvature,
+               "Hessian and curvature of the surface too; of a single blend the Hessian of its sum");
   app.add_option_function<std::string>(
          "--format", [](const std::string&) {}, "json, the only one so far")
       ->check(CLI::IsMember({"json"}));

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "field/blend/curvature.h"
+#include "field/skeleton/second_order.h"
 #include "renderer/app/commands.h"
 #include "renderer/app/files.h"
 #include "renderer/app/point_list.h"
@@ -47,13 +48,19 @@ Matrix3 in_world(const PlacedBlend& part, const Matrix3& hessian) {
   return columns;  // symmetric, so that its columns are its rows
 }
 
-std::string curvature_of_blend(const PlacedBlend& part, const Vec3d& p) {
+std::string hessian_of_sum(const PlacedBlend& part, const Vec3d& p) {
   const Vec3d local = part.is_in_world() ? p : part.local_from_world.point(p);
   const Matrix3 sum = in_world(part, sum_hessian(part.blend, local));
-  const Matrix3 corrected = in_world(part, corrected_hessian(part.blend, local));
-  const Curvature curvature = curvature_of(evaluate_part(part, p).corrected_gradient, corrected);
-  return fmt::format(R"(, "sum_hessian": [{}, {}, {}], "mean_curvature": {}, "gaussian_curvature": {})",
-                     json(sum.rows[0]), json(sum.rows[1]), json(sum.rows[2]), json(curvature.mean),
+  return fmt::format(R"(, "sum_hessian": [{}, {}, {}])", json(sum.rows[0]), json(sum.rows[1]), json(sum.rows[2]));
+}
+
+std::string curvature_of_field(const FieldProgram& program, const Vec3d& p) {
+  const HessianJet f = second_order_value(program, variables_at(p));
+  const auto& c = f.curvature;
+  const Matrix3 hessian{{Vec3d{c[0], c[5], c[4]}, Vec3d{c[5], c[1], c[3]}, Vec3d{c[4], c[3], c[2]}}};
+  const Curvature curvature = curvature_of({f.slope[0], f.slope[1], f.slope[2]}, hessian);
+  return fmt::format(R"(, "hessian": [{}, {}, {}], "mean_curvature": {}, "gaussian_curvature": {})",
+                     json(hessian.rows[0]), json(hessian.rows[1]), json(hessian.rows[2]), json(curvature.mean),
                      json(curvature.gaussian));
 }
 
@@ -61,9 +68,10 @@ void print_samples(const FieldProgram& program, const std::vector<Vec3d>& points
   const bool blend = is_single_blend(program);
   std::string_view separator = "[\n";
   for (const Vec3d& p : points) {
-    say(fmt::format("{}{{{}{}{}}}", separator, sample_of_field(program, p),
+    say(fmt::format("{}{{{}{}{}{}}}", separator, sample_of_field(program, p),
                     blend ? sample_of_blend(program.parts()[0], p) : std::string(),
-                    blend && curvature ? curvature_of_blend(program.parts()[0], p) : std::string()));
+                    blend && curvature ? hessian_of_sum(program.parts()[0], p) : std::string(),
+                    curvature ? curvature_of_field(program, p) : std::string()));
     separator = ",\n";
   }
   say(fmt::format("{}]\n", points.empty() ? "[" : "\n"));

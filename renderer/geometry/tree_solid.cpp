@@ -20,7 +20,7 @@ void TreeSolid::describe(std::size_t element, const void*, const Ray&, SurfaceHi
   const SurfacePoint surface = tracer_.surface_at(element, hit.position);
   hit.normal = surface.normal;
   hit.outside = surface.outside;
-  const MaterialId own = strongest_material(tracer_.tree(), hit.position);
+  const MaterialId own = tracer_.material_at(element, hit.position);
   hit.material = own.valid() ? own : material_;
 }
 

@@ -2,9 +2,11 @@
 #include "renderer/scene/definitions.h"
 
 #include <algorithm>
-#include <span>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "field/base/overloaded.h"
 #include "renderer/scene/field_forms.h"
@@ -22,114 +24,111 @@ void collect_uses(const Value& value, std::vector<std::string>& uses) {
   }
 }
 
-FieldNode moved_by(FieldNode moved, std::size_t offset) {
-  const auto move_list = [&](std::vector<FieldNodeId>& of) {
-    for (FieldNodeId& id : of) id = FieldNodeId{id.index() + offset};
-  };
-  const auto move_blend = [&](Blend& blend) {
-    move_list(blend.of);
-    if (auto* steered = std::get_if<AlphaFromField>(&blend.alpha))
-      steered->field = FieldNodeId{steered->field.index() + offset};
-  };
-  std::visit(Overloaded{[](Primitive&) {}, [&](Blend& blend) { move_blend(blend); },
-                        [&](Union& all) { move_list(all.of); }, [&](GeneralNode& node) { move_list(node.of); },
-                        [&](Transform& transform) { transform.of = FieldNodeId{transform.of.index() + offset}; }},
-             moved.what);
-  return moved;
+// All nodes that a node refers to: its children, and the field that steers its angles.
+template <class Node, class Visit>
+void for_each_reference(Node& node, const Visit& visit) {
+  std::visit(
+      [&](auto& what) {
+        if constexpr (requires { what.of.begin(); }) std::for_each(what.of.begin(), what.of.end(), visit);
+        else if constexpr (requires { what.of; }) visit(what.of);
+        if constexpr (requires { what.alpha.index(); })
+          if (auto* steered = std::get_if<AlphaFromField>(&what.alpha)) visit(steered->field);
+      },
+      node.what);
 }
 
-std::span<const FieldNodeId> children_of(const FieldNode& node) {
-  return std::visit(Overloaded{[](const Primitive&) { return std::span<const FieldNodeId>(); },
-                               [](const Transform& t) { return std::span(&t.of, 1); },
-                               [](const auto& n) { return std::span<const FieldNodeId>(n.of); }},
-                    node.what);
-}
-
-// Nodes that a walk from the root meets, each as often as it is placed; at most one more than a scene may have.
-std::size_t visits(const FieldDescription& field) {
-  std::vector<std::size_t> below;
-  for (const FieldNode& node : field.nodes) {
-    std::size_t count = 1;
-    for (const FieldNodeId child : children_of(node))
-      count = std::min(count + below[child.index()], Reader::max_nodes + 1);
-    below.push_back(count);
+// What a subtree needs of the library and `placed` does not hold yet, children before parents.
+std::vector<std::size_t> missing_below(FieldNodeId root, const FieldDescription& library,
+                                       const std::unordered_map<std::size_t, FieldNodeId>& placed) {
+  std::vector<std::size_t> missing;
+  std::unordered_set<std::size_t> seen;
+  std::vector<FieldNodeId> open{root};
+  while (!open.empty()) {
+    const std::size_t index = open.back().index();
+    open.pop_back();
+    if (placed.contains(index) || !seen.insert(index).second) continue;
+    missing.push_back(index);
+    for_each_reference(library.nodes[index], [&](FieldNodeId id) { open.push_back(id); });
   }
-  return below[field.root.index()];
+  std::sort(missing.begin(), missing.end());
+  return missing;
 }
 
 }  // namespace
 
 std::vector<std::string> Definitions::names() const {
   std::vector<std::string> names;
-  for (const auto& [name, fragment] : fragments_) names.push_back(name);
+  for (const auto& [name, definition] : known_) names.push_back(name);
   return names;
 }
 
 void Definitions::read(const Value& defs, Reader& reader) {
-  std::map<std::string, const Member*> by_name;
-  for (const Member& member : defs.members) {
-    by_name[member.key] = &member;
-    states_[member.key] = State::Waiting;
-    fragments_[member.key] = std::nullopt;
-  }
-  reader.nodes_left = max_nodes;
+  for (const Member& member : defs.members) known_[member.key].written = &member;
   for (const Member& member : defs.members)
-    if (states_[member.key] == State::Waiting) read_after_its_parts(member, by_name, reader);
+    if (Definition& d = known_[member.key]; d.state == State::Waiting) read_after_its_parts(d, reader);
   reader.nodes_left = Reader::max_nodes;
 }
 
 // Depth first with a stack of our own: a subtree is read when all that it uses has been.
-void Definitions::read_after_its_parts(const Member& first, const std::map<std::string, const Member*>& by_name,
-                                       Reader& reader) {
+void Definitions::read_after_its_parts(Definition& first, Reader& reader) {
   struct Step {
-    const Member* member;
+    Definition* definition;
     std::vector<std::string> uses;
   };
-  const auto step_into = [](const Member& member) {
-    Step step{&member, {}};
-    collect_uses(member.value, step.uses);
-    return step;
+  std::vector<Step> path;
+  const auto step_into = [&](Definition& d) {
+    d.state = State::Open;
+    path.push_back({&d, {}});
+    collect_uses(d.written->value, path.back().uses);
   };
 
-  states_[first.key] = State::Open;
-  std::vector<Step> path{step_into(first)};
+  step_into(first);
   while (!path.empty()) {
     Step& step = path.back();
     if (step.uses.empty()) {
-      FieldDescription fragment;
-      const Subject subject(reader, "`" + step.member->key + "`");
-      if (read_field(step.member->value, reader, fragment)) fragments_[step.member->key] = std::move(fragment);
-      states_[step.member->key] = State::Done;
+      read_one(*step.definition, reader);
       path.pop_back();
       continue;
     }
     const std::string next = std::move(step.uses.back());
     step.uses.pop_back();
-    const auto found = by_name.find(next);
-    if (found == by_name.end() || states_[next] == State::Done) continue;  // the unknown are reported by place()
-    if (states_[next] == State::Waiting) {
-      states_[next] = State::Open;
-      path.push_back(step_into(*found->second));
+    const auto found = known_.find(next);
+    if (found == known_.end() || found->second.state == State::Done) continue;  // place() reports the unknown
+    if (found->second.state == State::Waiting) {
+      step_into(found->second);
       continue;
     }
+    const Member& here = *step.definition->written;
     std::string circle = next;
-    for (auto s = path.rbegin(); s != path.rend() && s->member->key != next; ++s)
-      circle = s->member->key + " -> " + circle;
-    reader.error(step.member->place, "`" + next + "` uses itself: " + next + " -> " + circle,
-                 "a subtree can only use what does not lead back to it", step.member->key.size());
+    for (auto s = path.rbegin(); s != path.rend() && s->definition->written->key != next; ++s)
+      circle = s->definition->written->key + " -> " + circle;
+    reader.error(here.place, "`" + next + "` uses itself: " + next + " -> " + circle,
+                 "a subtree can only use what does not lead back to it", here.key.size());
   }
+}
+
+// Each has the whole budget of visits: what stands in the library is bounded by the text.
+void Definitions::read_one(Definition& d, Reader& reader) {
+  const Subject subject(reader, "`" + d.written->key + "`");
+  reader.nodes_left = Reader::max_nodes;
+  if (read_field(d.written->value, reader, library_)) d.root = library_.root;
+  d.visits = Reader::max_nodes - reader.nodes_left;
+  d.state = State::Done;
 }
 
 std::optional<FieldNodeId> Definitions::place(const std::string& name, const Value& at, FieldDescription& field,
                                               Reader& reader) const {
-  const auto found = fragments_.find(name);
-  if (found == fragments_.end()) return reader.unknown("subtree", name, at.place, names());
-  if (!found->second || !reader.spend_nodes(visits(*found->second), at.place)) return std::nullopt;
-  if (const auto there = reader.placed.find(name); there != reader.placed.end()) return there->second;
-  const FieldDescription& part = *found->second;
-  const std::size_t offset = field.nodes.size();
-  for (const FieldNode& node : part.nodes) field.nodes.push_back(moved_by(node, offset));
-  return reader.placed[name] = FieldNodeId{part.root.index() + offset};
+  const auto found = known_.find(name);
+  if (found == known_.end()) return reader.unknown("subtree", name, at.place, names());
+  const Definition& definition = found->second;
+  if (!definition.root || !reader.spend_nodes(definition.visits, at.place)) return std::nullopt;
+  if (&field == &library_) return definition.root;
+  for (const std::size_t index : missing_below(*definition.root, library_, reader.placed)) {
+    FieldNode node = library_.nodes[index];
+    for_each_reference(node, [&](FieldNodeId& id) { id = reader.placed.at(id.index()); });
+    reader.placed[index] = field.add(std::move(node));
+  }
+  return reader.placed.at(definition.root->index());
 }
 
 }  // namespace marrow

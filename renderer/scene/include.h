@@ -14,7 +14,7 @@ namespace marrow {
 struct TextBudget {
   std::uint64_t bytes = std::uint64_t{256} << 20;
   std::size_t files = 1000;
-  std::size_t values = 10'000'000;
+  std::size_t values = 30'000'000;  ///< some 100 bytes each
 };
 
 /// Reads and parses one text. Nothing after reporting why; `at` is where the file is named.

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "field/base/id.h"
@@ -34,9 +35,10 @@ class Reader {
 
   std::vector<std::string> materials;  ///< MaterialId indexes this
   Definitions definitions;
-  FieldDescription* field = nullptr;          ///< the tree that nodes are added to
-  std::map<std::string, FieldNodeId> placed;  ///< subtrees that `field` holds already
-  std::size_t nodes_left = max_nodes;         ///< of all fields together
+  FieldDescription* field = nullptr;  ///< the tree that nodes are added to
+  /// What `field` holds already of the library of definitions, by index there; never walked.
+  std::unordered_map<std::size_t, FieldNodeId> placed;
+  std::size_t nodes_left = max_nodes;  ///< of all fields together
 
   void error(const Place&, std::string message, std::string hint = {}, std::size_t length = 1);
   /// "`radius` must be a number above 0, found -1"; returns nothing for convenience. Silent where the value is broken.

@@ -9,7 +9,7 @@ POINTS = [(0.5, 0, 0), (0, 2, 0), (1, 1, 1), (-3, 0.25, 1e-3)]
 BASIC = ["point", "value", "gradient", "iso", "inside"]
 OF_BLEND = ["sum", "sum_gradient", "si_gradient", "si_norm", "alpha", "corrected", "corrected_gradient"]
 
-OF_CURVATURE = ["sum_hessian", "mean_curvature", "gaussian_curvature"]
+OF_CURVATURE = ["sum_hessian", "hessian", "mean_curvature", "gaussian_curvature"]
 
 
 class ProbeTest(ProgramTest):
@@ -38,10 +38,15 @@ class ProbeTest(ProgramTest):
         for point, answer in zip(POINTS, self.probe(self.write("point.yaml", POINT), POINTS, "--curvature")):
             self.assertEqual(list(answer), BASIC + OF_BLEND + OF_CURVATURE)
             distance = math.sqrt(sum(x * x for x in point))
-            self.assertAlmostEqual(answer["mean_curvature"] * distance, 1, 6)
-            self.assertAlmostEqual(answer["gaussian_curvature"] * distance**2, 1, 6)
+            self.assertAlmostEqual(answer["mean_curvature"] * distance, 1, 11)
+            self.assertAlmostEqual(answer["gaussian_curvature"] * distance**2, 1, 11)
             # f = 1/d^3: the trace of its Hessian is 6 / d^5
             self.assertAlmostEqual(sum(answer["sum_hessian"][k][k] for k in range(3)) * distance**5 / 6, 1, 9)
+
+    def test_curvature_of_any_field(self):
+        answer = self.probe(self.write("two.yaml", TWO_OBJECTS), [(2, 0.5, 0)], "--object", "other", "--curvature")[0]
+        self.assertEqual(list(answer), BASIC + OF_CURVATURE[1:])
+        self.assertAlmostEqual(answer["mean_curvature"] * 0.5, 1, 9)
 
     def test_numbers_survive_the_text(self):
         scene = self.write("point.yaml", POINT)

@@ -56,8 +56,8 @@ TEST(Curvature, IsThatOfABallAndOfATube) {
     const Vec3d p = normalize(random.vector(1)).vec() * radius;
     for (const Matrix3& hessian : {sum_hessian(ball, p), corrected_hessian(ball, p)}) {
       const Curvature c = curvature_of(evaluate(ball, p).corrected_gradient, hessian);
-      EXPECT_NEAR(c.mean * radius, 1, 1e-6);
-      EXPECT_NEAR(c.gaussian * radius * radius, 1, 1e-6);
+      EXPECT_NEAR(c.mean * radius, 1, 1e-12);
+      EXPECT_NEAR(c.gaussian * radius * radius, 1, 1e-12);
     }
     BlendField tube;
     tube.degree = 5;

@@ -17,9 +17,9 @@ namespace marrow::test {
 
 class AllCells {
  public:
-  explicit AllCells(BlendField field, const std::string& instruction_set = "", bool polynomials = true) {
+  explicit AllCells(BlendField field, const TraceOptions& options = {}) {
     expect_far_space_is_dropped(field);
-    auto made = BlendTracer::make(std::move(field), {.instruction_set = instruction_set, .polynomials = polynomials});
+    auto made = BlendTracer::make(std::move(field), options);
     if (!made) throw std::runtime_error("no tracer");
     tracer_ = std::move(*made);
     for (std::size_t i = 0; i < tracer_->tile_count(); ++i) {

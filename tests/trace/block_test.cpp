@@ -1,4 +1,4 @@
-// Blocks: both levels and the polynomials of patches are within their stated errors of the exact field, and patches
+// Blocks: both levels are within their stated errors of the exact field, and the slots that may hold surface
 // leave out no surface.
 #include "field/trace/block.h"
 
@@ -59,8 +59,8 @@ TEST(Block, LevelsAreWithinTheirStatedErrors) {
     for (int i = 0; i < 40; ++i, ++blocks) {
       const Block block =
           stage.block(static_cast<std::size_t>(random.whole(0, static_cast<int>(stage.cells.size()) - 1)));
-      const Block::Fine& traced = block.fine();
-      const FieldLevel& rough = block.view().coarse;
+      const BlockLevel& traced = block.fine();
+      const FieldLevel& rough = block.coarse().level;
       largest_fine = std::max(largest_fine, traced.f_error + traced.gradient_error / s.degree);
       for (int k = 0; k < 25; ++k) {
         const Vec3d x = random.vector(1), p = block.center() + x * block.half();
@@ -82,66 +82,10 @@ TEST(Block, ErrorIsWithinTheTolerance) {
     const Stage stage(random_scene(random, s, 12));
     for (std::size_t i = 0; i < stage.cells.size(); i += 29) {
       const Block block = stage.block(i);
-      const Block::Fine& fine = block.fine();
+      const BlockLevel& fine = block.fine();
       EXPECT_LT(fine.f_error + fine.gradient_error / s.degree, 1e-5 * (s.degree - 1)) << name_of(s);
     }
   }
-}
-
-// The smallest patch that holds x, in block coordinates; null where octants are dropped.
-const Patch* patch_at(const Octants& octants, const Vec3d& x, const Vec3d& center, double half) {
-  const int octant = (x.x > center.x ? 1 : 0) | (x.y > center.y ? 2 : 0) | (x.z > center.z ? 4 : 0);
-  if (!(octants.boxes.present >> octant & 1)) return nullptr;
-  const Patch& patch = octants.patch(octants, octant);
-  if (patch.kind != Patch::Kind::Divided) return &patch;
-  return patch_at(*patch.octants, x, octant_center(center, half, octant), half / 2);
-}
-const Patch* patch_at(const Block& block, const Vec3d& x) { return patch_at(*block.view().octants, x, {0, 0, 0}, 1); }
-
-std::array<double, 4> polynomial_at(const Patch& patch, const Vec3d& x) {
-  std::array<double, 4> sum{};
-  for (std::size_t i = 0; i < far_monomials; ++i) {
-    const Monomial& m = monomials[i];
-    const int exponents[3] = {m.a, m.b, m.c};
-    double product = 1;
-    for (std::size_t k = 0; k < 3; ++k)
-      for (int e = 0; e < exponents[k]; ++e)
-        product *= (x[k] - static_cast<double>(patch.center[k])) / static_cast<double>(patch.half);
-    for (std::size_t k = 0; k < 4; ++k) sum[k] += product * static_cast<double>(patch.polynomial[4 * i + k]);
-  }
-  return sum;
-}
-
-TEST(Patches, PolynomialsAreWithinTheirStatedErrors) {
-  Random random(64);
-  double largest_f = 0, largest_g = 0;
-  int tried = 0;
-  for (const Setting& s : settings()) {
-    const Stage stage(random_scene(random, s, random.whole(2, 12)));
-    for (int i = 0; i < 60; ++i) {
-      const Block block =
-          stage.block(static_cast<std::size_t>(random.whole(0, static_cast<int>(stage.cells.size()) - 1)));
-      for (int k = 0; k < 40; ++k) {
-        const Vec3d x = random.vector(1);
-        const Patch* patch = patch_at(block, x);
-        if (patch == nullptr || patch->kind != Patch::Kind::Smooth) continue;
-        ++tried;
-        const auto found = polynomial_at(*patch, x);
-        const auto exact =
-            sum_of_primitives<Derivatives::ScaleInvariant>(stage.field, block.center() + x * block.half());
-        const double f_share = std::fabs(found[0] - exact.value) / static_cast<double>(patch->f_error);
-        const double g_share =
-            length(Vec3d{found[1], found[2], found[3]} - exact.si_gradient) / static_cast<double>(patch->g_error);
-        ASSERT_LE(f_share, 1) << name_of(s);
-        ASSERT_LE(g_share, 1) << name_of(s);
-        largest_f = std::max(largest_f, f_share);
-        largest_g = std::max(largest_g, g_share);
-      }
-    }
-  }
-  std::cout << "  " << tried << " points; largest error over the stated: f " << largest_f << ", grad_S " << largest_g
-            << '\n';
-  EXPECT_GT(tried, 2000);
 }
 
 // Of a segment between a point outside and one inside.
@@ -153,19 +97,21 @@ Vec3d surface_between(const Stage& stage, const Block& block, Vec3d outside, Vec
   return inside;
 }
 
-bool holds(const Patch& patch, const Vec3d& x) {
-  if (patch.kind == Patch::Kind::Empty) return false;
-  double height = 0;
+// Whether the slot of x, in block coordinates, may hold surface.
+bool may_hold(const Block& block, const Vec3d& x) {
+  int octant = 0, slot = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    if (x[k] < static_cast<double>(patch.lower[k]) || x[k] > static_cast<double>(patch.upper[k])) return false;
-    height += x[k] * static_cast<double>(patch.normal[k]);
+    const int i = std::clamp(static_cast<int>(std::floor(4 * x[k] + 4)), 0, 7);
+    octant |= i >> 2 << k;
+    slot |= (i & 3) << (2 * k);
   }
-  return height <= static_cast<double>(patch.offset);
+  return block.view().surface(octant) >> slot & 1;
 }
 
-TEST(Patches, HoldAllSurface) {
+TEST(Block, SlotsHoldAllSurface) {
   Random random(63);
-  int surface = 0, smooth = 0;
+  int surface = 0;
+  double slots = 0, blocks = 0;
   for (const Setting& s : settings()) {
     const Stage stage(random_scene(random, s, random.whole(2, 9)));
     for (int i = 0; i < 60; ++i) {
@@ -178,19 +124,13 @@ TEST(Patches, HoldAllSurface) {
         if (value(a) >= 1 || value(b) < 1) continue;
         const Vec3d x = surface_between(stage, block, a, b);
         ++surface;
-        const Patch* patch = patch_at(block, x);
-        ASSERT_NE(patch, nullptr) << name_of(s);
-        ASSERT_TRUE(holds(*patch, x)) << name_of(s);
-        smooth += patch->kind == Patch::Kind::Smooth;
-        const Vec3d p = block.center() + x * block.half();
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          ASSERT_GE(p[axis], block.box().lower[axis]);
-          ASSERT_LE(p[axis], block.box().upper[axis]);
-        }
+        ASSERT_TRUE(may_hold(block, x)) << name_of(s);
       }
+      for (int octant = 0; octant < 8; ++octant) slots += std::popcount(block.view().surface(octant));
+      ++blocks;
     }
   }
-  std::cout << "  " << surface << " points of surface, " << smooth << " of them in patches with a polynomial\n";
+  std::cout << "  " << surface << " points of surface; slots of a block that may hold some: " << slots / blocks << '\n';
   EXPECT_GT(surface, 2000);
 }
 

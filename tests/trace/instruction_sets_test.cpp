@@ -1,4 +1,4 @@
-// The same bits from every instruction set.
+// The same bits from every instruction set, and whether levels of blocks are kept or not.
 #include <bit>
 #include <vector>
 
@@ -18,6 +18,19 @@ std::vector<std::string> sets_here() {
   return names;
 }
 
+struct Variant {
+  std::string name;
+  TraceOptions options;
+};
+
+// The sets, and the best of them without memory for blocks.
+std::vector<Variant> variants_here() {
+  std::vector<Variant> all;
+  for (const std::string& name : sets_here()) all.push_back({name, {.instruction_set = name}});
+  all.push_back({"nothing kept", {.instruction_set = "", .kept_bytes = 0}});
+  return all;
+}
+
 bool same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 bool same(const Vec3d& a, const Vec3d& b) { return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z); }
 
@@ -28,15 +41,15 @@ TEST(InstructionSets, UnknownOnesAreRefused) {
 }
 
 TEST(InstructionSets, GiveTheSameBits) {
-  const auto sets = sets_here();
-  ASSERT_GE(sets.size(), 2U) << "nothing to compare on this machine";
+  ASSERT_GE(sets_here().size(), 2U) << "nothing to compare on this machine";
+  const auto variants = variants_here();
   Random random(91);
   int rays = 0, hits = 0;
   const Setting settings[] = {{3, 1.0}, {4, contact_alpha(4)}, {4, -0.4}, {5, 0}, {7, 1.2}};
   for (const Setting& s : settings) {
     const BlendField blend = random_scene(random, s, 4);
     std::vector<AllCells> tracers;
-    for (const auto& name : sets) tracers.emplace_back(blend, name);
+    for (const Variant& v : variants) tracers.emplace_back(blend, v.options);
     const BlendTracer& first = tracers.front().tracer();
     for (const AllCells& other : tracers) {
       ASSERT_EQ(other.tracer().tile_count(), first.tile_count());
@@ -49,23 +62,23 @@ TEST(InstructionSets, GiveTheSameBits) {
       const Ray ray = any_ray(random, blend);
       const auto expected = tracers.front().trace(ray);
       hits += expected.hit.has_value();
-      for (std::size_t k = 1; k < sets.size(); ++k) {
+      for (std::size_t k = 1; k < variants.size(); ++k) {
         const auto found = tracers[k].trace(ray);
-        ASSERT_EQ(found.hit.has_value(), expected.hit.has_value()) << sets[k] << ' ' << name_of(s);
-        ASSERT_EQ(found.evaluations, expected.evaluations) << sets[k] << ' ' << name_of(s);
-        ASSERT_TRUE(same(found.undecided, expected.undecided)) << sets[k] << ' ' << name_of(s);
+        ASSERT_EQ(found.hit.has_value(), expected.hit.has_value()) << variants[k].name << ' ' << name_of(s);
+        ASSERT_EQ(found.evaluations, expected.evaluations) << variants[k].name << ' ' << name_of(s);
+        ASSERT_TRUE(same(found.undecided, expected.undecided)) << variants[k].name << ' ' << name_of(s);
         if (!expected.hit) continue;
-        ASSERT_EQ(found.hit->cell, expected.hit->cell) << sets[k] << ' ' << name_of(s);
-        ASSERT_TRUE(same(found.hit->t, expected.hit->t)) << sets[k] << ' ' << name_of(s);
+        ASSERT_EQ(found.hit->cell, expected.hit->cell) << variants[k].name << ' ' << name_of(s);
+        ASSERT_TRUE(same(found.hit->t, expected.hit->t)) << variants[k].name << ' ' << name_of(s);
         const Vec3d p = ray.at(expected.hit->t);
         const SurfacePoint a = first.surface_at(expected.hit->cell, p);
         const SurfacePoint b = tracers[k].tracer().surface_at(expected.hit->cell, p);
-        ASSERT_TRUE(same(a.normal.vec(), b.normal.vec()) && same(a.outside, b.outside)) << sets[k];
+        ASSERT_TRUE(same(a.normal.vec(), b.normal.vec()) && same(a.outside, b.outside)) << variants[k].name;
       }
     }
   }
   std::cout << "  " << rays << " rays, " << hits << " hits on";
-  for (const auto& name : sets) std::cout << ' ' << name;
+  for (const Variant& v : variants) std::cout << " / " << v.name;
   std::cout << '\n';
   EXPECT_GT(hits, rays / 10);
 }

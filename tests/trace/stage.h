@@ -28,7 +28,6 @@ struct Stage {
   const BlockKernels& kernels;
   NearFar coarse, fine;
   mutable BlockArena arena;
-  LatticeError lattice[2];
   CellTree tree;
   std::vector<CellTree::Cell> cells;
   Block::Context context;
@@ -42,10 +41,10 @@ struct Stage {
         kernels(*block_kernels(instruction_set)),
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
         fine(field.degree, budget_of(TraceOptions{}.tolerance, field.degree), kernels),
-        lattice{lattice_error(field.degree), lattice_error(field.degree - 1)},
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
         cells(tree.cells()),
-        context{sources.pieces(), tree, cutter, coarse, fine, lattice, iso, kernels, field.degree, arena, true} {}
+        context{sources.pieces(),          tree, cutter, coarse, fine, iso, kernels, field.degree, arena,
+                TraceOptions{}.kept_bytes, 0} {}
 
   Block block(std::size_t cell) const { return Block(context, cells[cell]); }
   double value(const Vec3d& p) const { return corrected_value(field, p); }

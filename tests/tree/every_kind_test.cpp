@@ -1,10 +1,9 @@
 // Every kind of node, with random parameters in small trees, keeps the laws of fields; a new kind needs no line here.
-#include <cstdlib>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include "tests/tree/laws.h"
+#include "tests/tree/laws_in_doubles.h"
 #include "tests/tree/small_tree.h"
 
 namespace marrow::test {
@@ -19,15 +18,9 @@ struct KindsOf<std::variant<Kinds...>> {
 struct NameOfKind {
   template <class Kind>
   static std::string GetName(int) {
-    return std::string(Kind::info.name);
+    return std::string(info_of_kind<Kind>().name);
   }
 };
-
-/// Checks of enclosures and of gradients for each kind: few in the suite, MARROW_LAW_CHECKS of them at night.
-std::uint64_t wanted_checks() {
-  const char* text = std::getenv("MARROW_LAW_CHECKS");
-  return text ? std::strtoull(text, nullptr, 10) : 6000;
-}
 
 template <class Kind>
 class EveryKind : public testing::Test {
@@ -43,7 +36,9 @@ class EveryKind : public testing::Test {
     }
   }
 };
-TYPED_TEST_SUITE(EveryKind, KindsOf<AnyNode>::type, NameOfKind);
+// Those of scenes, and what compile() makes of placements and unions; blends have tests of their own.
+using Kinds = tree::Extended<AnyNode, PointLeaf, AffineWarp, CrispUnion>::type;
+TYPED_TEST_SUITE(EveryKind, KindsOf<Kinds>::type, NameOfKind);
 
 TYPED_TEST(EveryKind, EnclosuresHoldValuesAndSlopes) {
   Checks checks;
@@ -62,7 +57,7 @@ TYPED_TEST(EveryKind, DerivativesAreThoseOfDifferences) {
     for (int i = 0; i < 8; ++i) {
       const Vec3d p = tree.eventful_point(this->random_);
       expect_gradient(tree, p, checks);
-      expect_hessian(tree, p, checks);
+      if (i % 2 == 0) expect_hessian(tree, p, checks);
     }
     return checks.slopes < wanted_checks();
   });
@@ -106,7 +101,7 @@ TYPED_TEST(EveryKind, IgnoresZerosWhereItSaysSo) {
   if constexpr (requires { TypeParam::ignores_zeros; }) {
     for (int trial = 0; trial < 1000; ++trial) {
       const std::vector<double> all = child_values(static_cast<std::size_t>(this->random_.whole(1, 5)), this->random_);
-      if (all.size() < TypeParam::info.min_children) continue;
+      if (all.size() < info_of_kind<TypeParam>().min_children) continue;
       const TypeParam node = random_node<TypeParam>(all.size(), this->random_);
       std::vector<double> some;
       for (const double x : all)
@@ -121,9 +116,9 @@ TYPED_TEST(EveryKind, IgnoresZerosWhereItSaysSo) {
 TYPED_TEST(EveryKind, StaysBelowALevelWhenItsChildrenDo) {
   if constexpr (SmallTree<TypeParam>::is_operator) {
     for (int trial = 0; trial < 3000; ++trial) {
-      const auto count =
-          std::max<std::size_t>(TypeParam::info.min_children, static_cast<std::size_t>(this->random_.whole(1, 5)));
-      if (count > TypeParam::info.max_children) continue;
+      const auto count = std::max<std::size_t>(info_of_kind<TypeParam>().min_children,
+                                               static_cast<std::size_t>(this->random_.whole(1, 5)));
+      if (count > info_of_kind<TypeParam>().max_children) continue;
       const TypeParam node = random_node<TypeParam>(count, this->random_);
       const double level = this->random_.between(0.05, 1.5);
       double child_level = level;

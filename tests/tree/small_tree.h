@@ -18,7 +18,7 @@ struct SmallTree {
   std::vector<Sphere> children;
 
   static SmallTree random(Random& random) {
-    constexpr NodeInfo info = Kind::info;
+    constexpr NodeInfo info = info_of_kind<Kind>();
     const std::size_t most = std::min(info.max_children, info.min_children + 3);
     const auto count =
         static_cast<std::size_t>(random.whole(static_cast<int>(info.min_children), static_cast<int>(most)));

@@ -16,13 +16,11 @@ struct Sample {
   float nominal;   // V(u) - v of the field as summed
   // Where the residual is not positive but the nominal one is, "outside" can still be told to within rounding: by the
   // nominal curve and unraised sums. What is passed over in that way is reported.
-  bool sure;     // residual > 0
-  float margin;  // the residual, or the nominal one when not sure
-  float raise;   // factor of f and |G| for what rounding can do
-  float slope;   // derivative of the residual along the ray
-  // (v / V)^(-1/(n-1)) - 1 of the field as summed, and its derivative: 0 on the surface and, near a single skeleton,
-  // linear in the distance from it, so that Newton's method on it jumps well [Aydinlilar and Zanni 2021].
-  float scaled, scaled_slope;
+  bool sure;                 // residual > 0
+  float margin;              // the residual, or the nominal one when not sure
+  float raise;               // factor of f and |G| for what rounding can do
+  float slope;               // derivative of the residual along the ray
+  float v, v_slope, curve;   // v, its derivative along the ray, and V(u) of the field as summed
   float x_weight, y_weight;  // -d residual / dx, dy
 };
 
@@ -34,8 +32,7 @@ struct Marcher {
   bool exits = false;  // the ray is inside, and what is looked for is where it leaves: all samples are mirrored
   int evaluations = 0;
 
-  Marcher(const BlockView& b, const FieldLevel& l, const LocalRay& r, float t0, float t1)
-      : block(b), level(l), ray(r), far(l, r, t0, t1, 0.25F) {}
+  Marcher(const BlockView& b, const FieldLevel& l, const LocalRay& r) : block(b), level(l), ray(r), far{l, r} {}
 
   Sample sample(float t) {
     ++evaluations;
@@ -62,7 +59,9 @@ struct Marcher {
     p.x_weight = iso.sin_theta + curve.slope * iso.cos_theta;
     p.y_weight = iso.cos_theta - curve.slope * iso.sin_theta;
     p.slope = -p.x_weight * p.s.df - p.y_weight * dy;
-    set_scaled(p, v, turned_v(iso, p.s.df, dy), curve.value);
+    p.v = v;
+    p.v_slope = turned_v(iso, p.s.df, dy);
+    p.curve = curve.value;
     p.s.f += level.f_error;
     p.y = y + level.g_error;
     p.raise = 1 + rounding + position_rounding * static_cast<float>(block.degree + 1) / p.distance;
@@ -78,8 +77,6 @@ struct Marcher {
   static void mirror(Sample& p) {
     p.margin = p.residual = p.nominal = -p.nominal;
     p.slope = -p.slope;
-    p.scaled = -p.scaled;
-    p.scaled_slope = -p.scaled_slope;
     p.sure = true;
   }
 
@@ -88,12 +85,18 @@ struct Marcher {
     return p.sure ? margin_at(block.iso, x * p.raise, y * p.raise) : nominal_margin_at(block.iso, x, y);
   }
 
-  void set_scaled(Sample& p, float v, float dv, float curve) const {
-    const float inverse = 1 / max_of(curve, 1e-6F), q = max_of(v * inverse, 1e-6F);
-    const float dq = (dv - q * (p.slope + dv)) * inverse;  // (v / V)' with V' = residual' + v'
+  // (v / V)^(-1/(n-1)) - 1 of the field as summed, and its derivative: 0 on the surface and, near a single skeleton,
+  // linear in the distance from it, so that Newton's method on it jumps well [Aydinlilar and Zanni 2021].
+  struct Scaled {
+    float value, slope;
+    float newton_step() const { return -value / slope; }
+  };
+  Scaled scaled(const Sample& p) const {
+    const float inverse = 1 / max_of(p.curve, 1e-6F), q = max_of(p.v * inverse, 1e-6F);
+    const float side = exits ? -1.0F : 1.0F;                                    // of mirrored samples
+    const float dq = (p.v_slope - q * (side * p.slope + p.v_slope)) * inverse;  // (v / V)' with V' = residual' + v'
     const float root = inverse_root(q, block.degree - 1);
-    p.scaled = root - 1;
-    p.scaled_slope = -root * dq / (q * static_cast<float>(block.degree - 1));
+    return {side * (root - 1), -side * root * dq / (q * static_cast<float>(block.degree - 1))};
   }
 
   // sum_{j=1..m} (m+1-j) a^j for m = degree (field) and degree + 1 (gradient): psi_1^m(q) / q^2 with a = 1/(1-q),
@@ -126,14 +129,14 @@ struct Marcher {
     const float q = abs_of(h) / p.distance;
     if (!(q < 0.9F)) return false;
     const Series series = series_of(1 / (1 - q));
-    const float hh = h * h, bend = (p.s.second * series.field + far.f_curvature) * hh;
+    const float hh = h * h, bend = (p.s.second * series.field + level.far_bend) * hh;
     const float x_end = p.s.f + p.s.df * h + bend;
     float length2 = 0;
     for (int i = 0; i < 3; ++i) {
       const float end = p.s.g[i] + p.s.dg[i] * h;
       length2 += end * end;
     }
-    const float y_end = root_of(length2) + (p.s.third * series.gradient + far.g_curvature) * hh + level.g_error;
+    const float y_end = root_of(length2) + (p.s.third * series.gradient + level.far_g_bend) * hh + level.g_error;
     const float y_up = max_of(p.y, y_end);
     if (!(margin(p, max_of(p.s.f, x_end), y_up) > 0)) return false;
     if (!block.iso.two_sided) return true;
@@ -153,8 +156,8 @@ struct Marcher {
       const float end = p.s.g[i] + p.s.dg[i] * h;
       length2 += end * end;
     }
-    const float bend = (p.s.second * series.field + far.f_curvature) * hh, x_high = p.s.f + p.s.df * h + bend;
-    const float y = root_of(length2) - (p.s.third * series.gradient + far.g_curvature) * hh - level.g_error;
+    const float bend = (p.s.second * series.field + level.far_bend) * hh, x_high = p.s.f + p.s.df * h + bend;
+    const float y = root_of(length2) - (p.s.third * series.gradient + level.far_g_bend) * hh - level.g_error;
     float x = x_high - 2 * bend - 2 * level.f_error;
     if (!(x > 0) || !(y > 0)) return false;
     if (block.iso.two_sided) x = max_of(x, min_of(x_high, block.iso.peak_x));
@@ -167,10 +170,10 @@ struct Marcher {
     const float q = abs_of(h) / p.distance;
     if (!(q < 0.9F)) return false;
     const Series series = series_of(1 / (1 - q));
-    const float hh = h * h, bend = (p.s.second * series.field + far.f_curvature) * hh;
+    const float hh = h * h, bend = (p.s.second * series.field + level.far_bend) * hh;
     float along = 0;
     for (int i = 0; i < 3; ++i) along += p.s.g[i] * (p.s.g[i] + p.s.dg[i] * h);
-    const float y_end = along / max_of(p.y, 1e-12F) - (p.s.third * series.gradient + far.g_curvature) * hh;
+    const float y_end = along / max_of(p.y, 1e-12F) - (p.s.third * series.gradient + level.far_g_bend) * hh;
     const float y = max_of(0, min_of(p.y, y_end)), x_end = p.s.f + p.s.df * h;
     float x = max_of(0, min_of(p.s.f, x_end - bend));
     if (block.iso.two_sided) x = max_of(x, min_of(max_of(p.s.f, x_end + bend), block.iso.peak_x));
@@ -181,13 +184,13 @@ struct Marcher {
     const float q = abs_of(h) / p.distance;
     if (!(q < 0.5F)) return false;
     const Series series = series_of(1 / (1 - q));
-    const float hh = h * h, bend = (p.s.second * series.field + far.f_curvature) * hh;
+    const float hh = h * h, bend = (p.s.second * series.field + level.far_bend) * hh;
     float length2 = 0;
     for (int i = 0; i < 3; ++i) {
       const float end = p.s.g[i] + p.s.dg[i] * h;
       length2 += end * end;
     }
-    const float y = root_of(length2) + (p.s.third * series.gradient + far.g_curvature) * hh, x = p.s.f + p.s.df * h;
+    const float y = root_of(length2) + (p.s.third * series.gradient + level.far_g_bend) * hh, x = p.s.f + p.s.df * h;
     return nominal_margin_at(block.iso, x + bend, y) > 0 &&
            (!block.iso.two_sided || nominal_margin_at(block.iso, max_of(0, x - bend), y) > 0);
   }
@@ -215,8 +218,8 @@ struct Marcher {
     const float most = min_of(limit, 0.85F * p.distance);
     // Margin along the step, to second order: margin - b h - c h^2.
     const float m = static_cast<float>(block.degree);
-    const float c = p.x_weight * (p.s.second * m * (m + 1) * 0.5F + far.f_curvature) +
-                    p.y_weight * (p.s.third * (m + 1) * (m + 2) * 0.5F + far.g_curvature);
+    const float c = p.x_weight * (p.s.second * m * (m + 1) * 0.5F + level.far_bend) +
+                    p.y_weight * (p.s.third * (m + 1) * (m + 2) * 0.5F + level.far_g_bend);
     const float b = -sign * p.slope;
     const float model = 2 * p.margin / (b + root_of(max_of(0, b * b + 4 * max_of(c, 0) * p.margin)) + 1e-20F);
     if (model > 0.8F * most && stays_until(p, sign * most)) return most;

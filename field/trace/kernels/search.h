@@ -84,18 +84,20 @@ struct Search {
   // Where the field as summed, without the level's errors, reaches 1: by the samples at the two ends of the first gap.
   // NaN-free; may lie outside the gap.
   float estimated_root() const {
-    const bool from_last = have_last && last.scaled_slope < 0;
-    const bool from_inside = bracketed() && inside.scaled_slope < 0;
-    if (from_last && from_inside) return hermite_root();
-    if (from_last) return last.t - last.scaled / last.scaled_slope;
-    if (from_inside) return inside.t - inside.scaled / inside.scaled_slope;
+    Marcher::Scaled before{}, behind{};
+    if (have_last) before = march.scaled(last);
+    if (bracketed()) behind = march.scaled(inside);
+    const bool from_last = before.slope < 0, from_inside = behind.slope < 0;
+    if (from_last && from_inside) return hermite_root(before, behind);
+    if (from_last) return last.t + before.newton_step();
+    if (from_inside) return inside.t + behind.newton_step();
     return infinity;
   }
 
   // The root of the cubic that meets the scaled values and slopes of both samples.
-  float hermite_root() const {
-    const float h = inside.t - last.t, p0 = last.scaled, p1 = inside.scaled;
-    const float d0 = last.scaled_slope * h, d1 = inside.scaled_slope * h;
+  float hermite_root(const Marcher::Scaled& before, const Marcher::Scaled& behind) const {
+    const float h = inside.t - last.t, p0 = before.value, p1 = behind.value;
+    const float d0 = before.slope * h, d1 = behind.slope * h;
     float u = p0 / max_of(p0 - p1, 1e-20F);
     for (int k = 0; k < 3; ++k) {
       const float u2 = u * u, u3 = u2 * u;
@@ -124,10 +126,12 @@ struct Search {
   // gap, and the field is above 1 just behind it. The step is so short that the scaled Newton step, whose error is of
   // third order, is exact to float.
   bool pinned(float& root) const {
-    if (!have_last || !(last.scaled_slope < 0)) return false;
-    const float step = -last.scaled / last.scaled_slope, tolerance = shortest_gap * last.distance;
+    if (!have_last) return false;
+    const Marcher::Scaled scaled = march.scaled(last);
+    const float step = scaled.newton_step(), tolerance = shortest_gap * last.distance;
     root = max_of(front, last.t + step);
-    if (!(step < 1.2e-3F * last.distance) || !(root - front < tolerance) || !(root <= end)) return false;
+    if (!(scaled.slope < 0) || !(step < 1.2e-3F * last.distance)) return false;
+    if (!(root - front < tolerance) || !(root <= end)) return false;
     return (bracketed() && inside.t - root < tolerance) || march.crossed_at(last, step + tolerance);
   }
 
@@ -204,7 +208,6 @@ inline Root decide(Search& s, float guess, bool any) {
     if (!root.hit && s.too_short(p)) root.hit = s.give_up_gap(root.t);
     guess = s.next(p, before, samples);
   }
-  root.enters_inside = root.hit && !s.have_last;  // perhaps: nothing before it is known to be outside
   root.undecided = s.undecided_before(root.hit ? root.t : infinity);
   return root;
 }

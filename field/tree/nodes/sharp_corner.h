@@ -16,6 +16,8 @@ struct SharpCorner {
   /// Of x, y >= 0.
   template <Number X>
   X value(const X& x, const X& y) const;
+  /// Whether the value is x all over a box.
+  bool is_first(const Interval& x, const Interval& y) const { return is_line(x, y, b); }
 
  private:
   bool is_union() const { return a < 1; }

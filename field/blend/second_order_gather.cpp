@@ -1,0 +1,123 @@
+// The rules of the angle as in gather.cpp, written once for numbers that carry their derivatives.
+#include "field/blend/second_order_gather.h"
+
+#include <cmath>
+#include <vector>
+
+#include "field/blend/local_contact.h"
+#include "field/blend/primitive_visit.h"
+#include "field/math/elementary.h"
+
+namespace marrow {
+namespace {
+
+using X = HessianJet;
+
+bool is_usable(const X& field) { return field.value > 0 && field.value <= field_ceiling; }
+
+Kernel kernel_of(const BlendField& blend) { return {blend.kernel, blend.degree, blend.kernel_shape}; }
+
+// Calls visit(sample, list, i) for each primitive; of a strand of distance segments the nearest counts.
+template <class Visit>
+void for_each_second_order(const BlendField& blend, const Vec3d& p, const Visit& visit) {
+  const Kernel kernel = kernel_of(blend);
+  const auto all = [&](const auto& list, const auto& field) {
+    for (std::size_t i = 0; i < list.size(); ++i) visit(field(list.skeletons[i]), list, i);
+  };
+  const auto integral = [&](const auto& s) { return second_order(s, p, kernel); };
+  const auto by_distance = [&](const auto& s) { return second_order_by_distance(s, p, kernel); };
+  all(blend.points, integral);
+  all(blend.segments, integral);
+  visit_strands(
+      blend.distance_segments,
+      [&](const SegmentSkeleton& s) { return distance_field<Derivatives::ScaleInvariant>(s, p, kernel); },
+      [&](const SkeletonSample&, const auto& list, std::size_t i) { visit(by_distance(list.skeletons[i]), list, i); });
+  all(blend.cani_hornus_segments, [&](const SegmentSkeleton& s) { return second_order_of_cani_hornus(s, p); });
+  all(blend.triangles, integral);
+  all(blend.arcs, integral);
+  all(blend.distance_triangles, by_distance);
+  all(blend.distance_arcs, by_distance);
+}
+
+// sum f_i alpha_i / sum f_i
+SecondOrderGathered per_skeleton(const BlendField& blend, const Vec3d& p) {
+  SecondOrderGathered all;
+  X angles;
+  for_each_second_order(blend, p, [&](const SecondOrderSample& s, const auto& list, std::size_t i) {
+    all.sum += s;
+    angles += s.field * list.alphas[i];
+    if (list.alphas_to.empty() || list.alphas_to[i] == list.alphas[i] || !is_usable(s.field)) return;
+    if constexpr (requires { second_order_share(list.skeletons[i], p, kernel_of(blend)); })
+      angles += second_order_share(list.skeletons[i], p, kernel_of(blend)) * (list.alphas_to[i] - list.alphas[i]);
+  });
+  if (is_usable(all.sum.field)) all.alpha = angles / all.sum.field;
+  return all;
+}
+
+Vec3<X> direction_of(const PointSkeleton&, const Vec3d&) { return {}; }
+Vec3<X> direction_of(const TriangleSkeleton&, const Vec3d&) { return {}; }
+Vec3<X> direction_of(const SegmentSkeleton& s, const Vec3d&) { return constant<X>(normalize(s.to - s.from).vec()); }
+Vec3<X> direction_of(const ArcSkeleton& s, const Vec3d& p) {
+  const Vec3<X> around = cross(constant<X>(cross(s.axis1, s.axis2)), variables_at(p) - s.center);
+  const X radius = length(around);
+  return radius.value > 0 ? around / radius : Vec3<X>{};
+}
+
+SecondOrderGathered by_direction(const BlendField& blend, const Vec3d& p) {
+  SecondOrderGathered all;
+  std::vector<SecondOrderStrand> strands(blend.direction_bounds.size());
+  for (std::size_t i = 0; i < strands.size(); ++i) strands[i].bounds = blend.direction_bounds[i];
+  for_each_second_order(blend, p, [&](const SecondOrderSample& s, const auto& list, std::size_t i) {
+    all.sum += s;
+    SecondOrderStrand& strand = strands[list.strands[i]];
+    strand.field += s.field;
+    strand.direction += direction_of(list.skeletons[i], p) * s.field;
+  });
+  if (is_usable(all.sum.field)) all.alpha = directional_alpha(strands);
+  return all;
+}
+
+SecondOrderGathered by_local_contact(const BlendField& blend, const Vec3d& p) {
+  SecondOrderGathered all;
+  const LocalContact& rule = *blend.local_contact;
+  const Kernel near_kernel{KernelFamily::Inverse, LocalContact::near_degree, 1};
+  X linear, squared, near;
+  double first = 0;
+  for_each_second_order(blend, p, [&](const SecondOrderSample& s, const auto& list, std::size_t i) {
+    all.sum += s;
+    const double radius = mean_radius(list.skeletons[i]);
+    if (first == 0) first = radius;
+    const double l = log(radius / first);
+    linear += s.field * l;
+    squared += s.field * (l * l);
+    if (rule.adapts_to_density()) near += second_order(list.skeletons[i], p, near_kernel).field;
+  });
+  const X& f = all.sum.field;
+  if (is_usable(f)) all.alpha = rule.at(f, 4.0 * (squared / f - square(linear / f)), near);
+  return all;
+}
+
+SecondOrderGathered with_angle(const BlendField& blend, const Vec3d& p, const X& alpha) {
+  SecondOrderGathered all{.sum = {}, .alpha = alpha};
+  for_each_second_order(blend, p, [&](const SecondOrderSample& s, const auto&, std::size_t) { all.sum += s; });
+  return all;
+}
+
+SecondOrderGathered gather_by_rule(const BlendField& blend, const Vec3d& p) {
+  if (blend.alpha_per_skeleton) return per_skeleton(blend, p);
+  if (!blend.direction_bounds.empty()) return by_direction(blend, p);
+  if (blend.local_contact) return by_local_contact(blend, p);
+  if (blend.alpha_source) return with_angle(blend, p, blend.alpha_source->second_order_at(p));
+  return with_angle(blend, p, blend.alpha);
+}
+
+}  // namespace
+
+SecondOrderGathered second_order_gather(const BlendField& blend, const Vec3d& p) {
+  SecondOrderGathered all = gather_by_rule(blend, p);
+  if (!is_usable(all.sum.field)) all.alpha = blend.alpha;
+  if (!(all.sum.field.value <= field_ceiling)) all.sum = SecondOrderSample::on_skeleton();
+  return all;
+}
+
+}  // namespace marrow

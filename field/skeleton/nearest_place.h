@@ -1,0 +1,16 @@
+// The place of a skeleton with the smallest scaled distance; internal to skeleton/.
+#pragma once
+
+#include "field/description/field_node.h"
+
+namespace marrow {
+
+struct NearestPlace {
+  Vec3d at;
+  double radius;
+  bool moves;  ///< with p; false at ends and corners
+};
+NearestPlace nearest_place(const SegmentSkeleton&, const Vec3d& p);
+NearestPlace nearest_place(const ArcSkeleton&, const Vec3d& p);
+
+}  // namespace marrow

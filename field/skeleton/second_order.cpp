@@ -1,0 +1,146 @@
+// Second derivatives of integrals: those of the kernel, summed over the nodes of the same quadratures.
+#include "field/skeleton/second_order.h"
+
+#include <algorithm>
+#include <array>
+
+#include "field/skeleton/compact_line.h"
+#include "field/skeleton/second_order_source.h"
+#include "field/skeleton/seen_line.h"
+#include "field/skeleton/skeletons.h"
+#include "field/skeleton/surface_integral.h"
+
+namespace marrow {
+namespace {
+
+// Of a radius: the error of the differences is 1e-12, that of a quadrature to 1e-10 becomes 1e-7.
+constexpr double relative_step = 1e-3;
+
+// The surface integrals are made for samples.
+struct Sum : SkeletonSample {
+  SecondOrderSample second;
+  Sum& operator+=(const Sum& b) {
+    SkeletonSample::operator+=(b);
+    second += b.second;
+    return *this;
+  }
+};
+
+// Differences of the first derivatives with steps h and 2h, combined to fourth order. Only for arcs and triangles under
+// the compact kernel, whose edge cuts them anywhere: what the edge adds to the derivatives is not under the integral.
+template <class Plain>
+SecondOrderSample by_differences(const Plain& plain, const Vec3d& p, double h) {
+  SecondOrderSample s;
+  const auto first = [](const SkeletonSample& x) {
+    return std::array{x.gradient, x.si_jacobian.rows[0], x.si_jacobian.rows[1], x.si_jacobian.rows[2]};
+  };
+  const SkeletonSample here = plain(p);
+  const std::array<HessianJet*, 4> jets{&s.field, &s.si.x, &s.si.y, &s.si.z};
+  const auto slopes = first(here);
+  for (std::size_t q = 0; q < 4; ++q) {
+    jets[q]->value = q == 0 ? here.value : here.si_gradient[q - 1];
+    jets[q]->slope = {slopes[q].x, slopes[q].y, slopes[q].z};
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto at = [&](double step) {
+      Vec3d moved = p;
+      moved[axis] += step;
+      return first(plain(moved));
+    };
+    const auto ahead = at(h), behind = at(-h), far_ahead = at(2 * h), far_behind = at(-2 * h);
+    for (std::size_t q = 0; q < 4; ++q) {
+      const Vec3d row = ((ahead[q] - behind[q]) * 8.0 - (far_ahead[q] - far_behind[q])) / (12 * h);
+      for (std::size_t k = 0; k < 6; ++k) {
+        const auto [i, j] = HessianJet::at[k];
+        if (i == axis) jets[q]->curvature[k] += row[j] * 0.5;
+        if (j == axis) jets[q]->curvature[k] += row[i] * 0.5;
+      }
+    }
+  }
+  return s;
+}
+
+SecondOrderSample limited(const SecondOrderSample& s) {
+  return s.field.value <= field_ceiling ? s : SecondOrderSample::on_skeleton();
+}
+
+}  // namespace
+
+SecondOrderSample second_order(const PointSkeleton& point, const Vec3d& p, const Kernel& kernel) {
+  const Profile profile(kernel, 0);
+  if (kernel.family == KernelFamily::Inverse && p == point.at) return SecondOrderSample::on_skeleton();
+  return limited(second_order_source(profile, p - point.at, point.radius, 1 / profile.normalisation()));
+}
+
+SecondOrderSample second_order(const SegmentSkeleton& segment, const Vec3d& p, const Kernel& kernel) {
+  SecondOrderSample sum;
+  if (segment.from == segment.to) return sum;
+  if (kernel.family == KernelFamily::Compact) return compact_line(segment, p, kernel);
+  const auto [length, foot, u, across, line] = seen_from(segment, p);
+  if (is_on_line(line, kernel)) return SecondOrderSample::on_skeleton();
+  const Profile profile(kernel, 1);
+  integrate_line(line, kernel, [&](double t, double weight) {
+    const double tau = segment.radius_from + line.slope * (t + foot);
+    sum += second_order_source(profile, across - u * t, tau, weight / (profile.normalisation() * tau));
+  });
+  return limited(sum);
+}
+
+HessianJet second_order_share(const SegmentSkeleton& segment, const Vec3d& p, const Kernel& kernel) {
+  HessianJet share;
+  if (segment.from == segment.to) return share;
+  if (kernel.family == KernelFamily::Compact) return compact_line(segment, p, kernel, true).field;
+  const auto [length, foot, u, across, line] = seen_from(segment, p);
+  if (is_on_line(line, kernel)) return share;
+  const Profile profile(kernel, 1);
+  integrate_line(line, kernel, [&](double t, double weight) {
+    const double tau = segment.radius_from + line.slope * (t + foot);
+    const double part = weight / (profile.normalisation() * tau) * ((t + foot) / length);
+    share += second_order_source(profile, across - u * t, tau, part).field;
+  });
+  return share;
+}
+
+SecondOrderSample second_order(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
+  if (kernel.family == KernelFamily::Compact) {
+    const double step = relative_step * std::min({triangle.radii[0], triangle.radii[1], triangle.radii[2]});
+    return by_differences([&](const Vec3d& q) { return triangle_field<Derivatives::Second>(triangle, q, kernel); }, p,
+                          step);
+  }
+  bool foot_is_inside = false;
+  const TriangleView v = best_view(triangle, p, foot_is_inside);
+  if (kernel.family == KernelFamily::Inverse && foot_is_inside && v.p_normal == 0)
+    return SecondOrderSample::on_skeleton();
+  const Profile profile(kernel, 2);
+  return limited(integrate_triangle<Sum>(triangle, p, kernel, [&](const Vec3d& w, double tau, double weight, Sum& sum) {
+                   sum.second += second_order_source(profile, w, tau, weight / (profile.normalisation() * tau * tau));
+                 }).second);
+}
+
+SecondOrderSample second_order(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
+  if (kernel.family == KernelFamily::Compact)
+    return by_differences([&](const Vec3d& q) { return arc_field<Derivatives::Second>(arc, q, kernel); }, p,
+                          relative_step * std::min(arc.radius_from, arc.radius_to));
+  if (kernel.family == KernelFamily::Inverse &&
+      arc_field<Derivatives::ScaleInvariant>(arc, p, kernel.degree).value > field_ceiling)
+    return SecondOrderSample::on_skeleton();
+  const Profile profile(kernel, 1);
+  return limited(integrate_arc<Sum>(arc, p, kernel, [&](const Vec3d& v, double tau, double weight, Sum& sum) {
+                   sum.second += second_order_source(profile, v, tau, weight / (profile.normalisation() * tau));
+                 }).second);
+}
+
+// f = R^2 I / 2 and grad_S f = R^3 grad I / 2, with the radius R at the foot of p.
+SecondOrderSample second_order_of_cani_hornus(const SegmentSkeleton& s, const Vec3d& p) {
+  const double length = marrow::length(s.to - s.from);
+  if (!(length > 0)) return {};
+  SecondOrderSample sample = second_order(SegmentSkeleton{s.from, s.to, 1, 1}, p, Kernel{KernelFamily::Inverse, 3, 1});
+  if (!(sample.field.value <= field_ceiling)) return SecondOrderSample::on_skeleton();
+  const HessianJet share = clamp(dot(variables_at(p) - s.from, (s.to - s.from) / (length * length)), 0, 1);
+  const HessianJet radius = s.radius_from + (s.radius_to - s.radius_from) * share, squared = square(radius);
+  sample.field = sample.field * squared;
+  for (std::size_t c = 0; c < 3; ++c) sample.si[c] = sample.si[c] * (squared * radius);
+  return sample;
+}
+
+}  // namespace marrow

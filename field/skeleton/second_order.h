@@ -1,0 +1,48 @@
+// Fields of single primitives with all second derivatives: what the Hessian of a corrected field is made of.
+#pragma once
+
+#include "field/description/field_node.h"
+#include "field/number/functions.h"
+#include "field/skeleton/skeleton_sample.h"
+
+namespace marrow {
+
+/// f and grad_S f (as of SkeletonSample), each with gradient and Hessian by p. Sums are plain.
+/// On the skeleton itself the field is +infinity and every derivative 0.
+struct SecondOrderSample {
+  HessianJet field;
+  Vec3<HessianJet> si;
+
+  static SecondOrderSample on_skeleton() { return {.field = std::numeric_limits<double>::infinity(), .si = {}}; }
+  SecondOrderSample& operator+=(const SecondOrderSample& b) {
+    field += b.field;
+    si += b.si;
+    return *this;
+  }
+};
+
+/// A position whose coordinates are the variables.
+inline Vec3<HessianJet> variables_at(const Vec3d& p) {
+  return {HessianJet::variable(p.x, 0), HessianJet::variable(p.y, 1), HessianJet::variable(p.z, 2)};
+}
+
+/// Integrals: the same quadratures as for the fields themselves, with the second derivatives of the kernel under the
+/// integral; relative error below 1e-12. Under the compact kernel, whose edge moves with p, the nodes of a segment move
+/// with it; arcs and triangles there, and only there, take differences of first derivatives (1e-6).   [field-maths 1-3]
+SecondOrderSample second_order(const PointSkeleton&, const Vec3d& p, const Kernel&);
+SecondOrderSample second_order(const SegmentSkeleton&, const Vec3d& p, const Kernel&);
+SecondOrderSample second_order(const TriangleSkeleton&, const Vec3d& p, const Kernel&);
+SecondOrderSample second_order(const ArcSkeleton&, const Vec3d& p, const Kernel&);
+
+/// The kernel of the smallest scaled distance; the place that is nearest moves with p.   [field-maths 3.2]
+SecondOrderSample second_order_by_distance(const SegmentSkeleton&, const Vec3d& p, const Kernel&);
+SecondOrderSample second_order_by_distance(const TriangleSkeleton&, const Vec3d& p, const Kernel&);
+SecondOrderSample second_order_by_distance(const ArcSkeleton&, const Vec3d& p, const Kernel&);
+
+/// Cani and Hornus 2001, as of cani_hornus_field().   [field-maths 8.1]
+SecondOrderSample second_order_of_cani_hornus(const SegmentSkeleton&, const Vec3d& p);
+
+/// segment_share() with its Hessian.
+HessianJet second_order_share(const SegmentSkeleton&, const Vec3d& p, const Kernel&);
+
+}  // namespace marrow

@@ -1,0 +1,14 @@
+// One of the two levels of a block.
+#pragma once
+
+#include "field/trace/block_kernels.h"
+
+namespace marrow {
+
+/// With certified bounds of its difference from the exact field, over its cell.
+struct BlockLevel {
+  FieldLevel level;
+  double f_error = 0, gradient_error = 0;
+};
+
+}  // namespace marrow

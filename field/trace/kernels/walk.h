@@ -1,0 +1,74 @@
+// Which slots of a cube a ray crosses. Part of block_kernels_<set>.cpp.
+
+// Bit i for each lane i of the first that is set, bit i + 16 for the second.
+inline unsigned bits_of(Index16 first, Index16 second) {
+  const Index16 bit{1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+  Index16 v = (first & bit) | (second & (bit << 16));
+  v |= __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7);
+  v |= __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3);
+  return static_cast<unsigned>(v[0] | v[1] | v[2] | v[3]);
+}
+
+// Directions that are 0 in an axis become very small: then no product is 0 times infinity.
+inline float nonzero(float d) { return abs_of(d) > 1e-20F ? d : 1e-20F; }
+
+inline V16 smaller(V16 a, V16 b) { return a < b ? a : b; }
+
+// Where a ray is in the four layers along an axis: the lanes of `low` and `high` name the planes of a layer. Layers
+// share their planes, and so the t of them; the outer ones reach beyond the cube, so that no rounding of its faces cuts
+// off the end of a ray. (Whole vectors throughout: narrower ones are widened through memory.)
+struct Layers {
+  V16 enter, leave;
+  Layers(V16 low, V16 high, float origin, float direction) {
+    const float inverse = 1 / nonzero(direction);
+    const V16 a = (low - origin) * inverse, b = (high - origin) * inverse;
+    enter = smaller(a, b);
+    leave = larger(a, b);
+  }
+};
+
+inline constexpr float far_out = 2;
+inline constexpr V16 x_low{-far_out, -0.5F, 0, 0.5F, -far_out, -0.5F, 0, 0.5F,
+                           -far_out, -0.5F, 0, 0.5F, -far_out, -0.5F, 0, 0.5F};
+inline constexpr V16 x_high{-0.5F, 0, 0.5F, far_out, -0.5F, 0, 0.5F, far_out,
+                            -0.5F, 0, 0.5F, far_out, -0.5F, 0, 0.5F, far_out};
+inline constexpr V16 y_low{-far_out, -far_out, -far_out, -far_out, -0.5F, -0.5F, -0.5F, -0.5F,
+                           0,        0,        0,        0,        0.5F,  0.5F,  0.5F,  0.5F};
+inline constexpr V16 y_high{-0.5F, -0.5F, -0.5F, -0.5F, 0,       0,       0,       0,
+                            0.5F,  0.5F,  0.5F,  0.5F,  far_out, far_out, far_out, far_out};
+
+inline void insert(Walk& walk, int slot, float begin, float end) {
+  int k = walk.count++;
+  for (; k > 0 && walk.begin[k - 1] > begin; --k) {
+    walk.begin[k] = walk.begin[k - 1];
+    walk.end[k] = walk.end[k - 1];
+    walk.slot[k] = walk.slot[k - 1];
+  }
+  walk.begin[k] = begin;
+  walk.end[k] = end;
+  walk.slot[k] = slot;
+}
+
+void walk(std::uint64_t slots, const LocalRay& ray, float t0, float t1, Walk& out) {
+  const Layers x(x_low, x_high, ray.origin[0], ray.direction[0]), y(y_low, y_high, ray.origin[1], ray.direction[1]);
+  const V16 enter = larger(larger(x.enter, y.enter), splat(t0)), leave = smaller(smaller(x.leave, y.leave), splat(t1));
+  const float inverse = 1 / nonzero(ray.direction[2]);
+  float z_enter[4], z_leave[4], plane = (-far_out - ray.origin[2]) * inverse;
+  Index16 met[4];
+  for (int k = 0; k < 4; ++k) {
+    const float next = ((k < 3 ? -0.5F + 0.5F * static_cast<float>(k) : far_out) - ray.origin[2]) * inverse;
+    z_enter[k] = min_of(plane, next);
+    z_leave[k] = max_of(plane, next);
+    plane = next;
+    met[k] = larger(enter, splat(z_enter[k])) < smaller(leave, splat(z_leave[k]));
+  }
+  std::uint64_t left = bits_of(met[0], met[1]) | static_cast<std::uint64_t>(bits_of(met[2], met[3])) << 32;
+  alignas(64) float column_enter[lanes], column_leave[lanes];
+  __builtin_memcpy(column_enter, &enter, sizeof column_enter);
+  __builtin_memcpy(column_leave, &leave, sizeof column_leave);
+  out.count = 0;
+  for (left &= slots; left != 0 && out.count < Walk::most; left &= left - 1) {
+    const int slot = __builtin_ctzll(left), column = slot & 15, layer = slot >> 4;
+    insert(out, slot, max_of(column_enter[column], z_enter[layer]), min_of(column_leave[column], z_leave[layer]));
+  }
+}

@@ -1,0 +1,65 @@
+// Levels of blocks that are not kept: each thread remembers its last ones.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <new>
+
+#include "field/trace/block_level.h"
+
+namespace marrow {
+
+/// Room for one level after another, 64-byte aligned.
+class LevelBuffer {
+ public:
+  float* allocate(std::size_t float_count) {
+    if (float_count > capacity_) {
+      data_.reset(static_cast<float*>(::operator new(float_count * sizeof(float), alignment)));
+      capacity_ = float_count;
+    }
+    return data_.get();
+  }
+
+ private:
+  static constexpr std::align_val_t alignment{64};
+  struct Free {
+    void operator()(float* p) const { ::operator delete(p, alignment); }
+  };
+  std::unique_ptr<float, Free> data_;
+  std::size_t capacity_ = 0;
+};
+
+/// For one thread. What it returns is good until this thread asks again.
+class LevelCache {
+ public:
+  struct Key {
+    std::uint64_t tracer;
+    const void* block;
+    bool operator==(const Key&) const = default;
+  };
+
+  /// `make(buffer)` returns a BlockLevel that lies in the buffer.
+  template <class Make>
+  const BlockLevel& get(const Key& key, const Make& make) {
+    Entry& entry = entries_[(reinterpret_cast<std::uintptr_t>(key.block) >> 6) * 0x9e3779b97f4a7c15U >> shift];
+    if (entry.key != key) {
+      entry.key = {};
+      entry.level = make(entry.buffer);
+      entry.key = key;
+    }
+    return entry.level;
+  }
+
+ private:
+  static constexpr int bits = 8, shift = 64 - bits;
+  struct Entry {
+    Key key{};
+    LevelBuffer buffer;
+    BlockLevel level;
+  };
+  std::array<Entry, std::size_t{1} << bits> entries_;
+};
+
+}  // namespace marrow

@@ -1,0 +1,76 @@
+// Random blends of everything that a blend can hold.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+
+#include "field/blend/blend_field.h"
+#include "field/blend/local_contact.h"
+#include "field/skeleton/second_order.h"
+#include "tests/field/random.h"
+
+namespace marrow::test {
+
+/// An angle given as a function of the place.
+class WavingAngle : public AlphaSource {
+ public:
+  AlphaSample at(const Vec3d& p) const override {
+    const HessianJet a = second_order_at(p);
+    return {.value = a.value, .gradient = {a.slope[0], a.slope[1], a.slope[2]}};
+  }
+  HessianJet second_order_at(const Vec3d& p) const override {
+    const Vec3<HessianJet> v = variables_at(p);
+    return 0.4 + 0.3 * sin(v.x * v.y + v.z);
+  }
+  Interval bounds(const Box3&) const override { return {0.1, 0.7}; }
+};
+
+/// Rules: 0 constant, 1 per skeleton, 2 by direction, 3 local contact, 4 from a source.
+inline void give_angles(BlendField& blend, Random& random, int rule) {
+  if (rule == 1) {
+    blend.alpha_per_skeleton = true;
+    const auto fill = [&](auto& list) {
+      for (std::size_t i = 0; i < list.size(); ++i) list.alphas.push_back(random.between(0.1, 1.4));
+    };
+    fill(blend.points), fill(blend.segments), fill(blend.arcs), fill(blend.triangles), fill(blend.distance_segments);
+    for (std::size_t i = 0; i < blend.segments.size(); ++i)
+      blend.segments.alphas_to.push_back(random.between(0.1, 1.4));
+  } else if (rule == 2) {
+    std::uint32_t strand = 0;
+    const auto fill = [&](auto& list) {
+      for (std::size_t i = 0; i < list.size(); ++i) list.strands.push_back(strand++);
+    };
+    fill(blend.points), fill(blend.segments), fill(blend.arcs), fill(blend.triangles), fill(blend.distance_segments);
+    for (std::uint32_t i = 0; i < strand; ++i) blend.direction_bounds.push_back({random.between(0, 0.5), 1.3});
+  } else if (rule == 3) {
+    const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+    const bool density = blend.kernel == KernelFamily::Inverse;
+    static const LocalContact table_of_four({KernelFamily::Inverse, 4, 1}, true, Projection::Paper, true, true);
+    if (density) blend.degree = 4;
+    blend.local_contact = density ? std::make_shared<const LocalContact>(table_of_four)
+                                  : std::make_shared<const LocalContact>(kernel, true, Projection::Paper, false, false);
+  } else if (rule == 4) {
+    blend.alpha_source = std::make_shared<const WavingAngle>();
+  }
+}
+
+/// Skeletons of all kinds under all kernels, projections and rules of the angle as `round` goes on; every fourth has a
+/// critical point near the origin.
+inline BlendField varied_blend(Random& random, int round) {
+  const double alpha = random.between(0, 1) < 0.1 ? 1.5707963267948966 : random.between(round % 7 == 0 ? -0.8 : 0, 1.5);
+  const Projection projection = round % 2 == 0 ? Projection::Paper : Projection::Exact;
+  const bool cavity = round % 5 != 4, mirrored = round % 4 == 3;
+  BlendField blend = mirrored ? mirrored_blend(random, {0, 0, 0}, random.whole(3, 7), alpha, cavity, projection)
+                              : random_blend(random, random.whole(3, 7), alpha, cavity, projection);
+  if (round % 3 != 0) {
+    const bool is_cauchy = round % 3 == 1;
+    blend.kernel = is_cauchy ? KernelFamily::Cauchy : KernelFamily::Compact;
+    blend.kernel_shape = is_cauchy ? random.between(0.8, 2) : random.between(1.5, 3);
+    blend.alpha = std::max(0.0, blend.alpha);
+  }
+  if (!mirrored) blend.arcs.add(random.arc(), {});
+  if (!mirrored) give_angles(blend, random, round % 11 % 5);
+  return blend;
+}
+
+}  // namespace marrow::test
