@@ -40,12 +40,11 @@ struct Bend {
     const Vec3<X> y = constant<X>(axis), z = constant<X>(normalize(across())), v = p - constant<X>(center);
     const X along = dot(v, y), height = dot(v, z), below = X(radius()) - height;
     const X at = angle_of(along, below), r = sqrt(square(along) + square(below));
-    const bool behind = is_behind(along, below);
     const X straight = in_three(
-        at, behind, [&](double end) { return X(radius() * end) + (along * X(cos(end)) - below * X(sin(end))); },
+        at, [&](double end) { return X(radius() * end) + (along * X(cos(end)) - below * X(sin(end))); },
         [&](const X& between) { return X(radius()) * between; });
     const X over = in_three(
-        at, behind, [&](double end) { return X(radius()) - (along * X(sin(end)) + below * X(cos(end))); },
+        at, [&](double end) { return X(radius()) - (along * X(sin(end)) + below * X(cos(end))); },
         [&](const X&) { return X(radius()) - r; });
     return p + y * (straight - along) + z * (over - height);
   }
@@ -57,10 +56,8 @@ struct Bend {
   Vec3d across() const { return toward.vec() - axis * dot(axis, toward); }
   double radius() const { return angle > 0 ? length / angle : Box3::inf; }
   template <Number X, class AtEnd, class Between>
-  X in_three(const X& at, bool behind, AtEnd at_end, Between between) const {
+  X in_three(const X& at, AtEnd at_end, Between between) const {
     const double half = angle / 2;
-    if constexpr (is_enclosure<X>)
-      if (behind) return hull(at_end(-half), at_end(half));
     return piecewise(
         at, -half, [&](const X&) { return at_end(-half); },
         [&](const X& rest) { return piecewise(rest, half, between, [&](const X&) { return at_end(half); }); });
@@ -74,18 +71,6 @@ struct Bend {
       if (value_of(y) == 0 && !(value_of(x) > 0)) return X(std::numbers::pi);
       const X r = sqrt(square(x) + square(y));
       return value_of(x) < 0 ? X(2.0) * atan((r - x) / y) : X(2.0) * atan(y / (r + x));
-    }
-  }
-  /// Whether a box on both sides of the cut belongs to the rigid ends alone: all its angles are beyond those of the
-  /// arc.
-  template <Number X>
-  bool is_behind(const X& along, const X& below) const {
-    if constexpr (is_enclosure<X>) {
-      const Interval &y = value_of(along), &x = value_of(below);
-      const double farthest = std::max(std::fabs(y.lo), std::fabs(y.hi));
-      return is_cut(y, x) && x.hi < 0 && farthest > 0 && angle_over(Interval(farthest), Interval(x.hi)).lo > angle / 2;
-    } else {
-      return false;
     }
   }
   static Interval angle_over(const Interval& y, const Interval& x);
