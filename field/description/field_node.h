@@ -180,6 +180,9 @@ struct GeneralNode {
 struct FieldNode {
   std::variant<Primitive, Blend, Union, Transform, GeneralNode> what;
   SourceLocation where;
+  /// Not 0: nodes with this number are the same subtree, which fields of several objects hold. What is made of it in its
+  /// own coordinates can serve them all.
+  std::size_t shared = 0;
 };
 
 /// Children always stand before their parents in `nodes`, so that no step needs recursion.

@@ -119,9 +119,11 @@ class Compiler {
     for (auto child = children.rbegin(); child != children.rend(); ++child) open.push_back({*child, map});
   }
 
-  // Which nodes are placed more than once, by two parents or by one that is. Parents stand behind their children.
+  // Which nodes are placed more than once, by two parents or by one that is, or by other fields. Parents stand behind
+  // their children.
   void find_shared() {
-    shared_.assign(description_.nodes.size(), false);
+    shared_.resize(description_.nodes.size());
+    for (std::size_t i = 0; i < shared_.size(); ++i) shared_[i] = description_.nodes[i].shared != 0;
     std::vector<bool> seen(description_.nodes.size(), false);
     for (std::size_t i = description_.nodes.size(); i-- > 0;) {
       const auto place = [&](FieldNodeId child) {
@@ -184,6 +186,7 @@ class Compiler {
     warn_of_bounded_kernel(blend, part.blend, here.node);
     const bool shared = !shared_.empty() && shared_[here.node.index()];
     if (shared) part.shape = here.node.index() + 1;
+    if (shared) part.shared = description_[here.node].shared;
     const bool baked = !shared && here.from_node.similarity().has_value();
     if (!baked) {
       part.world_from_local = here.from_node;

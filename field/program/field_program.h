@@ -20,7 +20,8 @@ namespace marrow {
 struct PlacedBlend {
   BlendField blend;
   Affine world_from_local, local_from_world;
-  std::size_t shape = 0;  ///< parts of one program with the same shape have the same blend; 0: alone
+  std::size_t shape = 0;   ///< parts of one program with the same shape have the same blend; 0: alone
+  std::size_t shared = 0;  ///< parts of all programs with the same number too (FieldNode::shared); 0: of this one alone
 
   bool is_in_world() const { return world_from_local == Affine{}; }
 };

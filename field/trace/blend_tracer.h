@@ -28,9 +28,9 @@ struct TraceOptions {
   /// Aim for the displacement of the traced surface from the exact one, over the local radius. Error budgets come from
   /// it; TraceStatistics::largest_error tells what is certified.
   double tolerance = 1e-5;
-  /// From so much memory of blocks in the process on, what blocks hold is not kept but made for each thread anew, to
-  /// the same bits. A million segments seen from afar have a million blocks that one or two rays meet.
-  std::size_t kept_bytes = std::size_t{1} << 30;
+  /// From so much memory of blocks in the process on (1.75 GiB), what blocks hold is not kept but made for each thread
+  /// anew, to the same bits. A million segments seen from afar have a million blocks that one or two rays meet.
+  std::size_t kept_bytes = std::size_t{7} << 28;
 };
 
 struct CellHit {

@@ -54,14 +54,15 @@ class Builder {
     }
     std::map<std::size_t, const FieldSolid*> placed;  // by shape
     for (const PlacedBlend& part : program->parts()) {
+      const FieldSolid* same = part.shared != 0 ? shared_[part.shared] : part.shape != 0 ? placed[part.shape] : nullptr;
       // The tracer of blends knows the inverse kernel along lines; the general one takes the others.
       if (!untraceable_part(part.blend).empty()) {
         add(TreeSolid::make(tree_of(part), object.material), object, id);
-      } else if (const auto same = placed.find(part.shape); part.shape != 0 && same != placed.end()) {
-        solids.push_back({same->second->placed_again(part, object.material), id});
-      } else if (const FieldSolid* made =
-                     add(FieldSolid::make(part, object.material, {.instruction_set = options_.isa}), object, id)) {
-        placed[part.shape] = made;
+      } else if (same != nullptr) {
+        solids.push_back({same->placed_again(part, object.material), id});
+      } else {
+        same = add(FieldSolid::make(part, object.material, {.instruction_set = options_.isa}), object, id);
+        (part.shared != 0 ? shared_[part.shared] : placed[part.shape]) = same;
       }
     }
     for (const FieldTree& tree : program->trees()) add(TreeSolid::make(tree, object.material), object, id);
@@ -85,6 +86,7 @@ class Builder {
  private:
   const SceneDescription& scene_;
   const SurfaceOptions& options_;
+  std::map<std::size_t, const FieldSolid*> shared_;  // by PlacedBlend::shared
 };
 
 std::string embree_config(const SurfaceOptions& options, int threads) {

@@ -126,6 +126,7 @@ std::optional<FieldNodeId> Definitions::place(const std::string& name, const Val
   for (const std::size_t index : missing_below(*definition.root, library_, reader.placed)) {
     FieldNode node = library_.nodes[index];
     for_each_reference(node, [&](FieldNodeId& id) { id = reader.placed.at(id.index()); });
+    node.shared = index + 1;
     reader.placed[index] = field.add(std::move(node));
   }
   return reader.placed.at(definition.root->index());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "renderer/scene/include.h"
@@ -53,6 +54,20 @@ void complete_materials(SceneDraft& draft) {
   }
 }
 
+// Definitions number what they place; only what stands in several objects is shared among them.
+void keep_what_is_shared(std::vector<ObjectDescription>& objects) {
+  std::unordered_map<std::size_t, int> fields;
+  const auto for_each_node = [&](const auto& visit) {
+    for (ObjectDescription& object : objects)
+      if (auto* field = std::get_if<FieldDescription>(&object.shape))
+        std::for_each(field->nodes.begin(), field->nodes.end(), visit);
+  };
+  for_each_node([&](FieldNode& node) { ++fields[node.shared]; });
+  for_each_node([&](FieldNode& node) {
+    if (fields[node.shared] < 2) node.shared = 0;
+  });
+}
+
 SceneDescription finished(SceneDraft draft, std::string hash) {
   return {.units = std::move(draft.units),
           .z_up = draft.z_up,
@@ -91,6 +106,7 @@ std::optional<SceneDescription> read_all(const std::filesystem::path& path, cons
   if (!draft) return std::nullopt;
   name_objects(draft->objects, reader);
   complete_materials(*draft);
+  keep_what_is_shared(draft->objects);
   return finished(*std::move(draft), reader.files.hash());
 }
 

@@ -120,6 +120,29 @@ objects:
   EXPECT_EQ(field.root.index(), 2u);
 }
 
+TEST_F(ReadScene, SubtreesOfSeveralObjectsAreKnownToBeTheSame) {
+  const auto scene = read(R"(marrow: 1
+defs:
+  pair: {blend: {of: [{point: {at: [0, 0, 0], radius: 1}}, {point: {at: [1, 0, 0], radius: 1}}]}}
+  once: {point: {at: [5, 0, 0], radius: 2}}
+objects:
+  - field: {transform: {translate: [9, 0, 0], of: {use: pair}}}
+  - field: {union: {of: [{use: once}, {use: pair}]}}
+)");
+  ASSERT_TRUE(scene) << render_all(scene.why(), record.sources);
+  std::vector<std::size_t> pairs;
+  for (const ObjectDescription& object : scene->objects)
+    for (const FieldNode& node : std::get<FieldDescription>(object.shape).nodes) {
+      const auto* primitive = std::get_if<Primitive>(&node.what);
+      const bool is_once = primitive && std::get<PointSkeleton>(primitive->skeleton).radius == 2;
+      EXPECT_TRUE(!is_once || node.shared == 0) << "only one object holds it";
+      if (std::holds_alternative<Blend>(node.what)) pairs.push_back(node.shared);
+    }
+  ASSERT_EQ(pairs.size(), 2u);
+  EXPECT_NE(pairs[0], 0u);
+  EXPECT_EQ(pairs[0], pairs[1]);
+}
+
 TEST_F(ReadScene, ChainsOfUsesMayBeLong) {
   std::string text = "marrow: 1\ndefs:\n  x0: {point: {at: [0, 0, 0]}}\n";
   for (int i = 1; i <= 1000; ++i)

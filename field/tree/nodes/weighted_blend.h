@@ -2,6 +2,7 @@
 // ones.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <variant>
@@ -84,7 +85,9 @@ struct WeightedBlend {
   // Narrower is a step to all that can be seen, and divides by nothing.
   static constexpr double least_width = 1e-9;
 
-  double weight(std::size_t i, std::size_t j) const { return weights.empty() ? 1 : weights[i][j]; }
+  double weight(std::size_t i, std::size_t j) const {
+    return weights.empty() ? 1 : std::max(least_width, weights[i][j]);
+  }
 
   template <Number X>
   X share(const SeparateWidths&, std::span<const X> f, std::size_t i) const {
