@@ -141,6 +141,7 @@ std::optional<CellHit> BlendTracer::first_hit(std::size_t tile, const Ray& ray, 
   const Tile& made = state_->tree.tile(tile);
   auto [enter, exit] = clip(made.content_box(), ray, {1 / direction.x, 1 / direction.y, 1 / direction.z});
   log.enter = enter;
+  log.side = CellLog::Side::Unknown;
   if (any) exit = std::min(exit, ray.t_max);
   if (!(enter < exit)) return {};
   const auto hit = hit_in(made, ray, any, enter, exit, log);
@@ -153,14 +154,16 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, boo
   const TileContent& content = tile.content();
   const RayInCube cube(ray, tile.place().center, tile.place().half);
   Walk walk;
-  state_->kernels.walk(tile.occupied(), cube.local, cube.to_local(enter), cube.to_local(exit), walk);
+  const float first = cube.to_local(enter);
+  state_->kernels.walk(tile.occupied(), cube.local, first, cube.to_local(exit), walk);
   const auto holder = [&](int i) {
     const int octant = path_of(walk.slot[i]).outer;
     return content.large_cells >> octant & 1 ? slot_at({octant, 0}) : walk.slot[i];
   };
   for (int i = 0; i < walk.count; ++i) {
     const int slot = holder(i);
-    const double from = std::max(enter, cube.to_world(walk.begin[i]));
+    // Exactly where the ray comes in, not that place as a float: a ray that begins here must be known to.
+    const double from = walk.begin[i] <= first ? enter : std::max(enter, cube.to_world(walk.begin[i]));
     while (i + 1 < walk.count && holder(i + 1) == slot) ++i;
     const double to = std::min(exit, cube.to_world(walk.end[i]));
     const auto hit = content.cells >> slot & 1 ? hit_in(tile, slot, ray, any, from, to, log)
@@ -170,6 +173,24 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, boo
   return {};
 }
 
+namespace {
+
+// Whether a ray begins inside, by the exact field: asked only when a block is entered inside. Rays of a camera share
+// their beginning.
+bool begins_inside(const BlendField& field, std::uint64_t tracer, const Ray& ray) {
+  struct Place {
+    std::uint64_t tracer = 0;
+    Vec3d at;
+    bool inside = false;
+  };
+  thread_local Place last;
+  const Vec3d at = ray.at(ray.t_min);
+  if (last.tracer != tracer || !(last.at == at)) last = {tracer, at, corrected_value(field, at) >= 1};
+  return last.inside;
+}
+
+}  // namespace
+
 std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray& ray, bool any, double enter,
                                            double exit, CellLog& log) const {
   const Block& b = block(tile, slot);
@@ -178,10 +199,21 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
     return {};
   }
   const RayInCube cube(ray, b.center(), b.half());
-  const Root root = state_->kernels.first_root(
-      b.view(), cube.local,
-      {.t0 = cube.to_local(enter), .t1 = cube.to_local(exit), .any = any, .from_surface = enter <= ray.t_min});
+  BlockKernels::Query query{.t0 = cube.to_local(enter),
+                            .t1 = cube.to_local(exit),
+                            .any = any,
+                            .from_surface = enter <= ray.t_min,
+                            .from_outside = log.side == CellLog::Side::Outside,
+                            .leaving = log.side == CellLog::Side::Inside};
+  Root root = state_->kernels.first_root(b.view(), cube.local, query);
   log.evaluations += static_cast<std::uint32_t>(root.evaluations);
+  if (root.begins_outside) log.side = CellLog::Side::Outside;
+  if (root.enters_inside && begins_inside(state_->field, state_->context.tracer, ray)) {
+    log.side = CellLog::Side::Inside;
+    query.leaving = true;
+    root = state_->kernels.first_root(b.view(), cube.local, query);
+    log.evaluations += static_cast<std::uint32_t>(root.evaluations);
+  }
   log.undecided = std::min(log.undecided, cube.to_world(root.undecided));
   if (!root.hit) return {};
   return CellHit{std::max(cube.to_world(root.t), ray.t_min), &b};

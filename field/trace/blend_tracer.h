@@ -43,6 +43,8 @@ struct CellLog {
   double enter = 0;                                            ///< t at which the ray came into the tile
   double undecided = std::numeric_limits<double>::infinity();  ///< t of the first gap too short to decide
   std::uint32_t evaluations = 0;                               ///< of the field
+  enum class Side { Unknown, Outside, Inside };
+  Side side = Side::Unknown;  ///< where the ray was before what it meets next
 };
 
 struct SurfacePoint {
@@ -68,8 +70,10 @@ class BlendTracer {
   std::size_t tile_count() const;
   Box3 tile_box(std::size_t tile) const;
 
-  /// The first root inside a tile with t in [ray.t_min, ray.t_max]; t does not depend on ray.t_max.
-  /// With `any`, any root.
+  /// The first place inside a tile where the ray comes to the surface: from outside, or, for a ray that begins inside,
+  /// where it leaves. A ray that begins within rounding of the surface counts as outside. t in [ray.t_min, ray.t_max];
+  /// t does not depend on ray.t_max. With `any`, any root, or
+  /// what is inside already.
   std::optional<CellHit> first_hit(std::size_t tile, const Ray&, bool any, CellLog&) const;
   /// Normal and starting point at a hit in this tile.
   SurfacePoint surface_at(std::size_t tile, const Vec3d& position) const;

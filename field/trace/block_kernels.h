@@ -58,6 +58,8 @@ struct Root {
   bool hit = false;
   float undecided = std::numeric_limits<float>::infinity();  ///< where the first gap too short to decide was skipped
   int evaluations = 0;
+  bool begins_outside = false;  ///< the ray is known to be outside before the hit, or to have been before t0
+  bool enters_inside = false;   ///< a hit, but the field is clearly above 1 where surface can first be in the block
 };
 
 /// Gaps along a ray shorter than this times the distance to the nearest source are not decided.
@@ -122,8 +124,10 @@ struct FarSums {
 struct BlockKernels {
   struct Query {
     float t0, t1;
-    bool any;           ///< any root will do
-    bool from_surface;  ///< the ray begins at t0, perhaps beside the surface
+    bool any;                   ///< any root will do
+    bool from_surface;          ///< the ray begins at t0, perhaps beside the surface
+    bool from_outside = false;  ///< the ray is known to have been outside before t0
+    bool leaving = false;       ///< the ray is inside at t0, and what is asked for is where it leaves
   };
   /// The first t in [t0, t1] where the corrected field reaches 1.
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);

@@ -139,7 +139,8 @@ IsoCurve::View IsoCurve::view() const {
           .sin_theta = static_cast<float>(sin_),
           .cos_theta = static_cast<float>(cos_),
           .two_sided = two_sided_,
-          .peak_x = static_cast<float>(peak_x_)};
+          .peak_x = static_cast<float>(peak_x_),
+          .critical = static_cast<float>(critical_ * (1 + 1e-6))};
 }
 
 double IsoCurve::lower(double u) const {
@@ -177,7 +178,7 @@ bool IsoCurve::outside(double x_low, double x_high, double y_high) const {
 }
 
 bool IsoCurve::inside(double x_low, double y_low) const {
-  if (two_sided_) return false;
+  if (two_sided_) return x_low > critical_ * (1 + 1e-5);  // C rises in x from the critical field on, and in y
   return x_low * sin_ + y_low * cos_ > upper(y_low * sin_ - x_low * cos_);
 }
 

@@ -31,12 +31,14 @@ class IsoCurve {
     float sin_theta, cos_theta;
     bool two_sided;  ///< alpha < 0: "outside" must be tested at both ends of the interval of x
     float peak_x;    ///< alpha < 0: where the curve over x is highest
+    float critical;  ///< critical_field_of() the correction, rounded up
   };
   View view() const;
 
   /// Whether C < 1 for all 0 <= x in [x_low, x_high], 0 <= y <= y_high. Never wrongly true.
   bool outside(double x_low, double x_high, double y_high) const;
-  /// Whether C > 1 for all x >= x_low, y >= y_low (only known for alpha >= 0; else false). Never wrongly true.
+  /// Whether C > 1 for all x >= x_low, y >= y_low (for alpha < 0 only known beyond the critical field). Never wrongly
+  /// true.
   bool inside(double x_low, double y_low) const;
   /// V_lower(u) - v: positive only where C < 1 for all smaller x, y (alpha >= 0), or at x, y itself.
   double margin(double x, double y) const;

@@ -119,7 +119,7 @@ Draft ratios(Random& random) {
   d.blend.points.add({{0, 0, 0}, 0.8}, {});
   double radius = 0.8, surface = radius;
   while (radius > 2e-4) {
-    radius *= random.between(0.05, 0.4);
+    radius *= random.between(0.1, 0.4);
     surface += radius;
     d.blend.points.add({out * surface, radius}, {});
   }

@@ -36,7 +36,7 @@ Ray near_cells(const StressScene& scene, Ray ray) {
 }
 
 // Nearer to a skeleton than this no surface is but at the point of a cone: only its place can be judged there.
-double point_size(const StressScene& scene) { return 5e-7 * scene.size(); }
+double point_size(const StressScene& scene) { return 1e-5 * scene.size(); }
 
 // Sums in float are known to this, whatever the tracer does.
 constexpr double field_rounding = 5e-7;

@@ -8,6 +8,7 @@ inline Root root_in(const BlockView& block, const LocalRay& ray, float t0, float
   float guess = t0;
   const Approach approached = approach(search, any, guess);
   root.evaluations = march.evaluations;
+  root.begins_outside = search.have_last;
   if (approached == Approach::Missed) return root;
   if (approached == Approach::SurelyInside) {
     root.hit = true;
@@ -18,7 +19,35 @@ inline Root root_in(const BlockView& block, const LocalRay& ray, float t0, float
   Search close(fine, search.front, t1);
   root = decide(close, min_of(max_of(guess, search.front), t1), any);
   root.evaluations = march.evaluations + fine.evaluations;
+  root.begins_outside = search.have_last || close.have_last;
   return root;
+}
+
+// Where a ray leaves that is inside at t0.
+inline Root exit_in(const BlockView& block, const LocalRay& ray, float t0, float t1, bool any) {
+  Marcher march(block, block.fine(), ray);
+  march.exits = true;
+  Search search(march, t0, t1);
+  search.record(march.sample(t0));
+  Root root;
+  if (!search.missed()) root = decide(search, search.guess(), any);
+  root.evaluations = march.evaluations;
+  return root;
+}
+
+// Nearer to 1 than this, neighbouring blocks may differ about the side.
+inline constexpr float clearly_inside = 2e-5F;
+
+// Whether the ray is inside at t, by the coarse level where that can tell.
+inline bool is_inside(const BlockView& block, const LocalRay& ray, float t, int& evaluations) {
+  Marcher rough(block, block.coarse(), ray);
+  const Sample p = rough.sample(t);
+  ++evaluations;
+  if (p.residual > 0) return false;
+  if (p.nominal < -clearly_inside && rough.inside_at(p, 0)) return true;
+  Marcher march(block, block.fine(), ray);
+  ++evaluations;
+  return march.sample(t).nominal < -clearly_inside;
 }
 
 // The stretches of a ray in slots that may hold surface, octant by octant; neighbours are joined.
@@ -85,22 +114,34 @@ class Runs {
 
 Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
   Root root;
+  root.begins_outside = query.from_outside;
   float front = query.t0;
-  if (query.from_surface) {  // too near for the coarse level; one fine certificate leads away
+  if (query.from_surface && !query.leaving) {  // too near for the coarse level; one fine certificate leads away
     Marcher march(block, block.fine(), ray);
     Search start(march, query.t0, query.t1);
-    start.record(march.sample(query.t0));
+    const Sample first = march.sample(query.t0);
     root.evaluations = march.evaluations;
+    root.hit = first.nominal < -clearly_inside;
+    root.enters_inside = root.hit && !query.any;
+    root.t = query.t0;
+    if (root.hit) return root;
+    root.begins_outside = true;
+    start.record(first);
     if (start.missed()) return root;
     front = start.front;
   }
   Runs runs(block, ray, front, query.t1);
   for (Runs::Run run; !root.hit && runs.next(run);) {
-    const Root found = root_in(block, ray, run.begin, run.end, query.any);
+    const Root found = query.leaving ? exit_in(block, ray, run.begin, run.end, query.any)
+                                     : root_in(block, ray, run.begin, run.end, query.any);
     root.hit = found.hit;
     root.t = found.t;
     root.undecided = min_of(root.undecided, found.undecided);
     root.evaluations += found.evaluations;
+    root.begins_outside |= found.begins_outside;
+    // Any root will do: a ray that begins inside meets one where it leaves.
+    if (root.hit && !root.begins_outside && !query.leaving && !query.any)
+      root.enters_inside = is_inside(block, ray, run.begin, root.evaluations);
   }
   return root;
 }

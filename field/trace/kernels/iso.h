@@ -36,6 +36,13 @@ inline float nominal_margin_at(const IsoCurve::View& iso, float x, float y) {
   return curve_at(iso, u).value - turned_v(iso, x, y);
 }
 
+// Whether the field is above 1, by the curve itself; false where the table ends.
+inline bool nominally_inside(const IsoCurve::View& iso, float x, float y) {
+  const float u = turned_u(iso, x, y);
+  if (!((u - iso.u_begin) * iso.inverse_step < static_cast<float>(iso.size - 1))) return false;
+  return x > iso.critical || curve_at(iso, u).value < turned_v(iso, x, y);
+}
+
 // margin_at() for 16 points at once.
 using Index16 = int __attribute__((vector_size(64)));
 

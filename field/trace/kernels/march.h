@@ -29,6 +29,7 @@ struct Marcher {
   const FieldLevel& level;
   const LocalRay& ray;
   FarOnRay far;
+  bool exits = false;  // the ray is inside, and what is looked for is where it leaves: all samples are mirrored
   int evaluations = 0;
 
   Marcher(const BlockView& b, const FieldLevel& l, const LocalRay& r) : block(b), level(l), ray(r), far{l, r} {}
@@ -68,7 +69,15 @@ struct Marcher {
     if (!(p.residual == p.residual)) p.residual = p.nominal = -1;  // on a source: infinite field
     p.sure = p.residual > 0;
     p.margin = p.sure ? p.residual : p.nominal;
+    if (exits) mirror(p);
     return p;
+  }
+
+  // What is inside takes the part of what is outside. To within rounding: nothing more is claimed of exits.
+  static void mirror(Sample& p) {
+    p.margin = p.residual = p.nominal = -p.nominal;
+    p.slope = -p.slope;
+    p.sure = true;
   }
 
   // Positive where the field with these sums is below 1: surely, or, around a sample that is not sure, as summed.
@@ -84,9 +93,10 @@ struct Marcher {
   };
   Scaled scaled(const Sample& p) const {
     const float inverse = 1 / max_of(p.curve, 1e-6F), q = max_of(p.v * inverse, 1e-6F);
-    const float dq = (p.v_slope - q * (p.slope + p.v_slope)) * inverse;  // (v / V)' with V' = residual' + v'
+    const float side = exits ? -1.0F : 1.0F;                                    // of mirrored samples
+    const float dq = (p.v_slope - q * (side * p.slope + p.v_slope)) * inverse;  // (v / V)' with V' = residual' + v'
     const float root = inverse_root(q, block.degree - 1);
-    return {root - 1, -root * dq / (q * static_cast<float>(block.degree - 1))};
+    return {side * (root - 1), -side * root * dq / (q * static_cast<float>(block.degree - 1))};
   }
 
   // sum_{j=1..m} (m+1-j) a^j for m = degree (field) and degree + 1 (gradient): psi_1^m(q) / q^2 with a = 1/(1-q),
@@ -106,6 +116,12 @@ struct Marcher {
     }
     return {field, field + powers * a};
   }
+
+  // Whether all of [t, t + h] is on the side of p.
+  bool stays_until(const Sample& p, float h) const { return exits ? inside_until(p, h) : outside_until(p, h); }
+
+  // Whether t + h is on the other side than p.
+  bool crossed_at(const Sample& p, float h) const { return exits ? outside_at(p, h) : inside_at(p, h); }
 
   // Whether the field is below 1 on all of [t, t + h] (h of either sign): B3 and B4 of tracing.md. Both bounds are
   // convex in h, so the ends suffice.
@@ -148,8 +164,56 @@ struct Marcher {
     return curve_at(block.iso, turned_u(block.iso, x, y)).value < turned_v(block.iso, x, y);
   }
 
+  // The bounds of outside_until() from the other side; |G| at least its part along G at t. The lower bounds are concave
+  // in h, so the ends suffice.
+  bool inside_until(const Sample& p, float h) const {
+    const float q = abs_of(h) / p.distance;
+    if (!(q < 0.9F)) return false;
+    const Series series = series_of(1 / (1 - q));
+    const float hh = h * h, bend = (p.s.second * series.field + level.far_bend) * hh;
+    float along = 0;
+    for (int i = 0; i < 3; ++i) along += p.s.g[i] * (p.s.g[i] + p.s.dg[i] * h);
+    const float y_end = along / max_of(p.y, 1e-12F) - (p.s.third * series.gradient + level.far_g_bend) * hh;
+    const float y = max_of(0, min_of(p.y, y_end)), x_end = p.s.f + p.s.df * h;
+    float x = max_of(0, min_of(p.s.f, x_end - bend));
+    if (block.iso.two_sided) x = max_of(x, min_of(max_of(p.s.f, x_end + bend), block.iso.peak_x));
+    return nominally_inside(block.iso, x, y);
+  }
+
+  bool outside_at(const Sample& p, float h) const {
+    const float q = abs_of(h) / p.distance;
+    if (!(q < 0.5F)) return false;
+    const Series series = series_of(1 / (1 - q));
+    const float hh = h * h, bend = (p.s.second * series.field + level.far_bend) * hh;
+    float length2 = 0;
+    for (int i = 0; i < 3; ++i) {
+      const float end = p.s.g[i] + p.s.dg[i] * h;
+      length2 += end * end;
+    }
+    const float y = root_of(length2) + (p.s.third * series.gradient + level.far_g_bend) * hh, x = p.s.f + p.s.df * h;
+    return nominal_margin_at(block.iso, x + bend, y) > 0 &&
+           (!block.iso.two_sided || nominal_margin_at(block.iso, max_of(0, x - bend), y) > 0);
+  }
+
+  // Deep inside no gradient can bring the field below 1, and f falls at most as if all of it came from the nearest
+  // source: f(t + h) >= f(t) (1 + |h| / d)^-n. Beside a source, where sums overflow, a hundredth of the half side stays
+  // inside, because cells are no larger than some radii of what is in them (Divider).
+  float deep_step(const Sample& p) const {
+    constexpr float beside_source = 0.01F;
+    if (!exits) return 0;
+    if (!(p.s.f < 1e30F)) return beside_source;
+    if (!(p.s.f > block.iso.critical)) return 0;
+    const float step = 0.98F * p.distance * (inverse_root(block.iso.critical / p.s.f, block.degree) - 1);
+    return p.distance < 0.1F * beside_source ? max_of(step, beside_source) : max_of(step, 0);
+  }
+
   // The largest certified step from p in direction `sign`, at most `limit`; 0 when none was found.
   float certified_step(const Sample& p, float sign, float limit) const {
+    const float deep = deep_step(p);
+    return deep >= limit ? limit : max_of(deep, smooth_step(p, sign, limit));
+  }
+
+  float smooth_step(const Sample& p, float sign, float limit) const {
     if (!(limit > 0)) return 0;
     const float most = min_of(limit, 0.85F * p.distance);
     // Margin along the step, to second order: margin - b h - c h^2.
@@ -158,13 +222,13 @@ struct Marcher {
                     p.y_weight * (p.s.third * (m + 1) * (m + 2) * 0.5F + level.far_g_bend);
     const float b = -sign * p.slope;
     const float model = 2 * p.margin / (b + root_of(max_of(0, b * b + 4 * max_of(c, 0) * p.margin)) + 1e-20F);
-    if (model > 0.8F * most && outside_until(p, sign * most)) return most;
+    if (model > 0.8F * most && stays_until(p, sign * most)) return most;
     // Short steps end where the model does; long ones before, because their remainder grows faster than the model.
     float h = min_of(0.985F * model, 0.7F * most);
-    if (h > 0 && h < 0.01F * p.distance && outside_until(p, sign * h)) return h;
+    if (h > 0 && h < 0.01F * p.distance && stays_until(p, sign * h)) return h;
     h *= 0.86F;
     for (int i = 0; i < 5; ++i, h *= 0.5F)
-      if (h > 0 && outside_until(p, sign * h)) return h;
+      if (h > 0 && stays_until(p, sign * h)) return h;
     return 0;
   }
 };

@@ -132,7 +132,7 @@ struct Search {
     root = max_of(front, last.t + step);
     if (!(scaled.slope < 0) || !(step < 1.2e-3F * last.distance)) return false;
     if (!(root - front < tolerance) || !(root <= end)) return false;
-    return (bracketed() && inside.t - root < tolerance) || march.inside_at(last, step + tolerance);
+    return (bracketed() && inside.t - root < tolerance) || march.crossed_at(last, step + tolerance);
   }
 
   // A gap too short to decide: with an inside sample behind it, it holds the root; else a grazing touch, left.

@@ -1,0 +1,69 @@
+// Rays that begin inside: the first hit is where they leave, and occluded rays agree.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "field/trace/blend_tracer.h"
+#include "tests/trace/oracle.h"
+#include "tests/trace/random_scene.h"
+
+namespace marrow::test {
+namespace {
+
+std::optional<double> hit_of(const BlendTracer& tracer, const Ray& ray, bool any) {
+  std::optional<double> best;
+  for (std::size_t i = 0; i < tracer.tile_count(); ++i) {
+    CellLog log;
+    const auto hit = tracer.first_hit(i, ray, any, log);
+    if (hit && (!best || hit->t < *best)) best = hit->t;
+  }
+  return best;
+}
+
+// In a skeleton, or anywhere clearly inside.
+std::optional<Vec3d> place_inside(Random& random, const BlendField& field, const Oracle& oracle) {
+  const auto& segments = field.segments.skeletons;
+  const SegmentSkeleton& s = segments[static_cast<std::size_t>(random.whole(0, static_cast<int>(segments.size()) - 1))];
+  const Vec3d on_axis = lerp(s.from, s.to, random.between(0.1, 0.9));
+  const Vec3d p = random.between(0, 1) < 0.3 ? on_axis : on_axis + random.vector(1.2 * s.radius_from);
+  return oracle.value(p) > 1.001 ? std::optional(p) : std::nullopt;
+}
+
+void expect_inside_until(const Oracle& oracle, const Ray& ray, double t) {
+  constexpr int samples = 64;
+  for (int i = 1; i < samples; ++i) {
+    const double at = t * i / samples, value = oracle.value(ray.at(at));
+    ASSERT_TRUE(!(value < 1 - 1e-5)) << "outside at t = " << at << ", which is before the exit at " << t;
+  }
+}
+
+TEST(RayFromInside, LeavesWhereTheFieldFallsToOne) {
+  Random random(77);
+  int rays = 0;
+  for (const int n : {3, 4, 6})
+    for (const double alpha : {-0.4, 0.0, contact_alpha(n), std::numbers::pi / 2}) {
+      const BlendField field = random_scene(random, {n, alpha}, random.whole(2, 7));
+      const Oracle oracle(field);
+      const auto made = BlendTracer::make(field, {});
+      ASSERT_TRUE(made);
+      const BlendTracer& tracer = **made;
+      for (int i = 0; i < 60; ++i) {
+        const auto from = place_inside(random, field, oracle);
+        if (!from) continue;
+        Ray ray{*from, UnitVec3::unchecked(random_direction(random))};
+        const auto exit = hit_of(tracer, ray, false);
+        ASSERT_TRUE(exit) << "n " << n << " alpha " << alpha;
+        ++rays;
+        EXPECT_NEAR(oracle.value(ray.at(*exit)), 1, 1e-5) << "n " << n << " alpha " << alpha;
+        expect_inside_until(oracle, ray, *exit);
+        ray.t_max = *exit * 1.001;
+        EXPECT_TRUE(hit_of(tracer, ray, true));
+        if (HasFatalFailure()) return;
+      }
+    }
+  EXPECT_GT(rays, 300);
+  std::cout << "  " << rays << " rays\n";
+}
+
+}  // namespace
+}  // namespace marrow::test
