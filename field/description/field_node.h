@@ -180,8 +180,8 @@ struct GeneralNode {
 struct FieldNode {
   std::variant<Primitive, Blend, Union, Transform, GeneralNode> what;
   SourceLocation where;
-  /// Not 0: nodes with this number are the same subtree, which fields of several objects hold. What is made of it in its
-  /// own coordinates can serve them all.
+  /// Not 0: nodes with this number are the same subtree, which fields of several objects hold. What is made of it in
+  /// its own coordinates can serve them all.
   std::size_t shared = 0;
 };
 

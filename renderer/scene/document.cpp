@@ -91,7 +91,8 @@ class TreeBuilder final : public YAML::EventHandler {
     check_tag(at, tag);
     if (levels_.size() == static_cast<std::size_t>(max_nesting)) {
       report(at, "nested deeper than " + std::to_string(max_nesting) + " levels",
-             "operators take any number of children in one list; name deep subtrees under `defs:` and place them with `use:`");
+             "operators take any number of children in one list; name deep subtrees under `defs:` and place them with "
+             "`use:`");
       throw Stop{};
     }
     levels_.push_back({.value = Value(kind, at), .keys = {}, .key = {}});
