@@ -74,6 +74,7 @@ struct BlendTracer::State {
   mutable BlockArena arena;
   CellTree tree;
   Block::Context context;
+  Box3 bounds;  // of all tiles
 
   State(BlendField f, const TraceOptions& options, const BlockKernels& k)
       : field(std::move(f)),
@@ -86,7 +87,9 @@ struct BlendTracer::State {
         fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
         context{sources.pieces(),   tree,         cutter, coarse, fine, iso, kernels, field.degree, arena,
-                options.kept_bytes, next_number()} {}
+                options.kept_bytes, next_number()} {
+    for (std::size_t i = 0; i < tree.tile_count(); ++i) bounds.include(tree.tile_box(i));
+  }
 };
 
 Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const TraceOptions& options) {
@@ -176,8 +179,8 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, boo
 namespace {
 
 // Whether a ray begins inside, by the exact field: asked only when a block is entered inside. Rays of a camera share
-// their beginning.
-bool begins_inside(const BlendField& field, std::uint64_t tracer, const Ray& ray) {
+// their beginning. `bounds` hold all tiles, and so all that is inside.
+bool begins_inside(const BlendField& field, const Box3& bounds, std::uint64_t tracer, const Ray& ray) {
   struct Place {
     std::uint64_t tracer = 0;
     Vec3d at;
@@ -185,6 +188,7 @@ bool begins_inside(const BlendField& field, std::uint64_t tracer, const Ray& ray
   };
   thread_local Place last;
   const Vec3d at = ray.at(ray.t_min);
+  if (!bounds.contains(at)) return false;
   if (last.tracer != tracer || !(last.at == at)) last = {tracer, at, corrected_value(field, at) >= 1};
   return last.inside;
 }
@@ -208,7 +212,7 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
   Root root = state_->kernels.first_root(b.view(), cube.local, query);
   log.evaluations += static_cast<std::uint32_t>(root.evaluations);
   if (root.begins_outside) log.side = CellLog::Side::Outside;
-  if (root.enters_inside && begins_inside(state_->field, state_->context.tracer, ray)) {
+  if (root.enters_inside && begins_inside(state_->field, state_->bounds, state_->context.tracer, ray)) {
     log.side = CellLog::Side::Inside;
     query.leaving = true;
     root = state_->kernels.first_root(b.view(), cube.local, query);
