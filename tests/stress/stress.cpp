@@ -56,7 +56,7 @@ Outcome run_scene(const Job& job, std::uint64_t number) {
 // What 10^6 rays showed, and room for chance: one phantom (nearly touching, 2.4e-5 off), 16 hits that a limit of the
 // ray just before or behind them moved by more than rounding (thin features and nearly touching sheets).
 bool is_held(const Verdict& v, const Parity& p) {
-  return v.missed + v.wrong_side == 0 && p.odd + p.odd_lost == 0 && v.phantom <= v.rays / 100'000 &&
+  return v.missed + v.wrong_side + v.far_phantom == 0 && p.odd + p.odd_lost == 0 && v.phantom <= v.rays / 100'000 &&
          v.limits <= v.rays / 10'000 && v.lost <= v.rays / 10'000 &&
          v.conditioned - v.conditioned_within_4_ulp <= v.conditioned / 10'000 + 1;
 }

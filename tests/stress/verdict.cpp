@@ -80,6 +80,7 @@ void judge_hit(const StressScene& scene, const Ray& ray, const SurfaceHit& hit, 
     ++v.displaced;
   } else {
     ++v.phantom;
+    v.far_phantom += std::fabs(exact.corrected - 1) > far_off;
     note(v.phantom_rays, text(scene, ray, family, "phantom hit off", displacement));
   }
   if (const double excess = scene.oracle().value(hit.outside) - 1; !(excess < 0)) {
@@ -133,6 +134,7 @@ void Verdict::add(const Verdict& b) {
   missed += b.missed;
   lost += b.lost;
   phantom += b.phantom;
+  far_phantom += b.far_phantom;
   displaced += b.displaced;
   grazing += b.grazing;
   uncertified += b.uncertified;

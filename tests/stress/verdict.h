@@ -19,6 +19,8 @@ struct Verdict {
   std::uint64_t lost = 0;
   /// A hit off the surface, where the exact field differs from 1 by more than grazing_excess.
   std::uint64_t phantom = 0;
+  /// Those of them where it differs by more than far_off.
+  std::uint64_t far_phantom = 0;
   /// The start of a further ray that the exact field says is inside.
   std::uint64_t wrong_side = 0;
   /// A hit that is not the same, or not gone, when the ray ends at it, or just before it; or occluded() differs from
@@ -50,6 +52,8 @@ struct Verdict {
 /// A stretch inside counts as missed if the corrected field gets this far above 1 on it: the traced field may differ by
 /// 1e-5 of the radius, times the slope of some n - 1 over a radius.
 inline constexpr double grazing_excess = 1e-5;
+/// No phantom at all may be this far off.
+inline constexpr double far_off = 5e-5;
 /// Allowed distance of a hit from the exact surface, over the distance to the skeleton.
 inline constexpr double allowed_displacement = 2e-5;
 
