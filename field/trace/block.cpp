@@ -71,21 +71,36 @@ class SourceEmitter {
   Box3 box_;
 };
 
-// (f, Gx, Gy, Gz) for each monomial, where G = gradient of the potential.
-void write_far(const FarField& far, float* out) {
-  for (std::size_t i = 0; i < far_monomials; ++i) {
-    const Monomial& m = monomials[i];
-    out[4 * i] = static_cast<float>(far.f[i]);
-    out[4 * i + 1] = static_cast<float>(far.potential[monomial_index(m.a + 1, m.b, m.c)] * (m.a + 1));
-    out[4 * i + 2] = static_cast<float>(far.potential[monomial_index(m.a, m.b + 1, m.c)] * (m.b + 1));
-    out[4 * i + 3] = static_cast<float>(far.potential[monomial_index(m.a, m.b, m.c + 1)] * (m.c + 1));
+// (f, Gx, Gy, Gz) for a monomial, where G = gradient of the potential.
+std::array<double, 4> far_coefficients(const FarField& far, std::size_t i) {
+  const Monomial& m = monomials[i];
+  return {far.f[i], far.potential[monomial_index(m.a + 1, m.b, m.c)] * (m.a + 1),
+          far.potential[monomial_index(m.a, m.b + 1, m.c)] * (m.b + 1),
+          far.potential[monomial_index(m.a, m.b, m.c + 1)] * (m.c + 1)};
+}
+
+void write_far(const FarField& far, std::size_t monomial_count, float* out) {
+  for (std::size_t i = 0; i < monomial_count; ++i)
+    for (const double c : far_coefficients(far, i)) *out++ = static_cast<float>(c);
+}
+
+// Leaves only the monomials up to a degree. None of the others is above 1 in the cube.
+void truncate(FarField& far, int degree) {
+  for (std::size_t i = monomials_to_degree(degree); i < monomials_to_degree(field_degree); ++i) {
+    const auto c = far_coefficients(far, i);
+    far.f_error += std::fabs(c[0]);
+    far.gradient_error += length({c[1], c[2], c[3]});
   }
 }
+
+// The errors of the coarse level are far above what its polynomials have beyond this degree.
+constexpr int coarse_far_degree = 2;
 
 // One level of a block before it is laid out.
 struct Level {
   SourceGroups curves, points;
   FarField far;
+  int far_degree;
 
   std::size_t source_floats() const {
     return static_cast<std::size_t>((curves.group_count() + points.group_count()) * floats_per_group);
@@ -93,12 +108,13 @@ struct Level {
 };
 
 Level make_level(const Block::Context& context, const NearFar& precision, const Surroundings& around,
-                 const CellTree::Cell& cell) {
+                 const CellTree::Cell& cell, int far_degree) {
   SourceEmitter emitter(context, precision, cell.center, cell.half);
   for (const SourceRef ref : around.near) emitter.emit(context.pieces[ref.index()]);
-  Level level{std::move(emitter.curves), std::move(emitter.points), around.far};
+  Level level{std::move(emitter.curves), std::move(emitter.points), around.far, far_degree};
   level.far.f_error += emitter.f_error;
   level.far.gradient_error += emitter.gradient_error;
+  truncate(level.far, far_degree);
   return level;
 }
 
@@ -109,12 +125,12 @@ Level make_level(const Block::Context& context, const NearFar& precision, const 
 struct FarRange {
   std::array<float, 4> slope{}, bend{};
 
-  explicit FarRange(const float* far) {
-    for (std::size_t k = 0; k < 4; ++k) add(far, k);
+  FarRange(const float* far, std::size_t monomial_count) {
+    for (std::size_t k = 0; k < 4; ++k) add(far, monomial_count, k);
   }
-  void add(const float* far, std::size_t k) {
+  void add(const float* far, std::size_t monomial_count, std::size_t k) {
     std::array<std::array<float, 3>, 3> second{};
-    for (std::size_t i = 1; i < far_monomials; ++i) {
+    for (std::size_t i = 1; i < monomial_count; ++i) {
       const Monomial& m = monomials[i];
       const int e[3] = {m.a, m.b, m.c};
       const float c = std::fabs(far[4 * i + k]);
@@ -131,15 +147,17 @@ struct FarRange {
 template <class Memory>
 BlockLevel write_level(const Level& level, Memory& memory) {
   const auto curve_floats = static_cast<std::size_t>(level.curves.group_count() * floats_per_group);
-  float* const sources = memory.allocate(level.source_floats() + far_floats);
+  const std::size_t monomials = monomials_to_degree(level.far_degree);
+  float* const sources = memory.allocate(level.source_floats() + 4 * monomials);
   float* const far = sources + level.source_floats();
   std::copy_n(level.curves.data(), curve_floats, sources);
   std::copy_n(level.points.data(), level.source_floats() - curve_floats, sources + curve_floats);
-  write_far(level.far, far);
-  const FarRange range(far);
+  write_far(level.far, monomials, far);
+  const FarRange range(far, monomials);
   return {.level = {.sources = sources,
                     .curve_groups = level.curves.group_count(),
                     .point_groups = level.points.group_count(),
+                    .far_degree = level.far_degree,
                     .far = far,
                     .far_slope = range.slope[0],
                     .far_g_slope = FarRange::length(range.slope),
@@ -218,8 +236,9 @@ const BlockLevel& Block::level(const Lazy<BlockLevel>& kept, LevelCache& cache, 
 const BlockLevel& Block::coarse() const {
   thread_local LevelCache cache;
   return level(coarse_, cache, [&](auto& memory) {
-    BlockLevel coarse =
-        write_level(make_level(context_, context_.coarse, context_.tree.coarse_surroundings(cell_), cell_), memory);
+    const Level level =
+        make_level(context_, context_.coarse, context_.tree.coarse_surroundings(cell_), cell_, coarse_far_degree);
+    BlockLevel coarse = write_level(level, memory);
     coarse.level.f_error = static_cast<float>(1.0001 * coarse.f_error);
     coarse.level.g_error = static_cast<float>(1.0001 * coarse.gradient_error);
     return coarse;
@@ -229,7 +248,8 @@ const BlockLevel& Block::coarse() const {
 const BlockLevel& Block::fine() const {
   thread_local LevelCache cache;
   return level(fine_, cache, [&](auto& memory) {
-    return write_level(make_level(context_, context_.fine, context_.tree.surroundings(cell_), cell_), memory);
+    return write_level(make_level(context_, context_.fine, context_.tree.surroundings(cell_), cell_, field_degree),
+                       memory);
   });
 }
 

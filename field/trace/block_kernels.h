@@ -15,16 +15,15 @@
 namespace marrow {
 
 inline constexpr int lanes = 16;
-inline constexpr int floats_per_group = 5 * lanes;    ///< x[16] y[16] z[16] weight[16] radius[16]
-inline constexpr int far_monomials = 35;              ///< of degree <= 4
-inline constexpr int far_floats = far_monomials * 4;  ///< (f, Gx, Gy, Gz) for each monomial
+inline constexpr int floats_per_group = 5 * lanes;  ///< x[16] y[16] z[16] weight[16] radius[16]
 
 /// One representation of the field in a block: f = sum w d^-m + polynomial, G = grad_S f likewise with w tau.
 struct FieldLevel {
   const float* sources = nullptr;        ///< curve groups, then point groups; 64-byte aligned
   int curve_groups = 0;                  ///< of exponent m = degree
   int point_groups = 0;                  ///< of exponent m = degree - 1
-  const float* far = nullptr;            ///< far_floats coefficients
+  int far_degree = 4;                    ///< of the polynomials: 2 or 4
+  const float* far = nullptr;            ///< (f, Gx, Gy, Gz) for each monomial
   float f_error = 0, g_error = 0;        ///< added to f and |G| wherever "outside" is to be proved
   float far_slope = 0, far_g_slope = 0;  ///< |derivative| of the far f and G along any line, at most
   float far_bend = 0, far_g_bend = 0;    ///< the same of |second derivative| / 2

@@ -6,33 +6,34 @@ constexpr int monomial_at(int a, int b, int c) {
   return d * (d + 1) * (d + 2) / 6 + rest * (rest + 1) / 2 + rest - b;
 }
 
-// Horner's rule unrolled by the compiler: sum over c of the coefficients of x^A y^B z^c, c <= Degree - A - B, ...
-template <int A, int B, int C, class V, class X, class Coefficient>
-inline V nested_in_z(const X& z, const Coefficient& coefficient) {
-  const V here = coefficient(monomial_at(A, B, C));
-  if constexpr (A + B + C == 4) return here;
-  else return nested_in_z<A, B, C + 1, V>(z, coefficient) * z + here;
+// The far polynomials by Horner's rule, unrolled by the compiler: the sum over c of the coefficients of x^A y^B z^c
+// with c <= Degree - A - B, ...
+template <int Degree, int A, int B, int C, class X>
+inline auto nested_in_z(const FieldLevel& level, const X& z) {
+  const V4 here = load4(level.far + 4 * monomial_at(A, B, C));
+  if constexpr (A + B + C == Degree) return here;
+  else return nested_in_z<Degree, A, B, C + 1>(level, z) * z + here;
 }
 
 // ... then over b ...
-template <int A, int B, class V, class X, class Coefficient>
-inline V nested_in_y(const X& y, const X& z, const Coefficient& coefficient) {
-  const V here = nested_in_z<A, B, 0, V>(z, coefficient);
-  if constexpr (A + B == 4) return here;
-  else return nested_in_y<A, B + 1, V>(y, z, coefficient) * y + here;
+template <int Degree, int A, int B, class X>
+inline auto nested_in_y(const FieldLevel& level, const X& y, const X& z) {
+  const auto here = nested_in_z<Degree, A, B, 0>(level, z);
+  if constexpr (A + B == Degree) return here;
+  else return nested_in_y<Degree, A, B + 1>(level, y, z) * y + here;
 }
 
-// ... and over a: the polynomials of degree 4 at x, y, z; `coefficient(i)` gives that of monomial i for all lanes of V.
-template <class V, int A = 0, class X, class Coefficient>
-inline V nested_polynomial(const X& x, const X& y, const X& z, const Coefficient& coefficient) {
-  const V here = nested_in_y<A, 0, V>(y, z, coefficient);
-  if constexpr (A == 4) return here;
-  else return nested_polynomial<V, A + 1>(x, y, z, coefficient) * x + here;
+// ... and over a.
+template <int Degree, int A = 0, class X>
+inline auto nested_polynomial(const FieldLevel& level, const X& x, const X& y, const X& z) {
+  const auto here = nested_in_y<Degree, A, 0>(level, y, z);
+  if constexpr (A == Degree) return here;
+  else return nested_polynomial<Degree, A + 1>(level, x, y, z) * x + here;
 }
 
 // (f, Gx, Gy, Gz) of the far field at a point.
 inline V4 far_at(const FieldLevel& level, float x, float y, float z) {
-  return nested_polynomial<V4>(x, y, z, [&](int i) { return load4(level.far + 4 * i); });
+  return level.far_degree == 2 ? nested_polynomial<2>(level, x, y, z) : nested_polynomial<4>(level, x, y, z);
 }
 
 // A value and its derivative along a ray.
@@ -44,9 +45,11 @@ struct FarSlope {
 struct OnRay {
   float at, slope;
 };
+inline FarSlope operator*(const V4& c, const OnRay& x) { return {c * x.at, c * x.slope}; }
 inline FarSlope operator*(const FarSlope& p, const OnRay& x) {
   return {p.value * x.at, p.slope * x.at + p.value * x.slope};
 }
+inline FarSlope operator+(const FarSlope& p, const V4& c) { return {p.value + c, p.slope}; }
 inline FarSlope operator+(const FarSlope& p, const FarSlope& c) { return {p.value + c.value, p.slope + c.slope}; }
 
 // The far field along a ray.
@@ -54,11 +57,12 @@ struct FarOnRay {
   const FieldLevel& level;
   const LocalRay& ray;
 
+  OnRay coordinate(int k, float t) const { return {ray.origin[k] + ray.direction[k] * t, ray.direction[k]}; }
+
   void add(float t, RaySums& s) const {
-    const auto coordinate = [&](int k) { return OnRay{ray.origin[k] + ray.direction[k] * t, ray.direction[k]}; };
-    const FarSlope far = nested_polynomial<FarSlope>(coordinate(0), coordinate(1), coordinate(2), [&](int i) {
-      return FarSlope{load4(level.far + 4 * i), V4{}};
-    });
+    const OnRay x = coordinate(0, t), y = coordinate(1, t), z = coordinate(2, t);
+    const FarSlope far =
+        level.far_degree == 2 ? nested_polynomial<2>(level, x, y, z) : nested_polynomial<4>(level, x, y, z);
     s.f += far.value[0];
     s.df += far.slope[0];
     for (int i = 0; i < 3; ++i) {
