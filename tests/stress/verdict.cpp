@@ -118,6 +118,21 @@ void judge_free_way(const StressScene& scene, const Ray& ray, double end, bool c
   note(certified ? v.missed_rays : v.lost_rays, text(scene, ray, family, certified ? "missed" : "lost", excess));
 }
 
+// A ray that begins inside meets the surface where it leaves: nothing worth mentioning may be outside before.
+bool leaves_from_inside(const StressScene& scene, const Ray& ray, double t) {
+  return scene.oracle().value(ray.at(ray.t_min)) >= 1 &&
+         dot(evaluate(scene.blend(), ray.at(t)).corrected_gradient, ray.direction) < 0;
+}
+
+void judge_way_inside(const StressScene& scene, const Ray& ray, double end, bool certified, const char* family,
+                      Verdict& v) {
+  if (!(ray.t_min < end)) return;
+  const double deficit = scene.oracle().largest_deficit(ray, ray.t_min, end);
+  if (deficit < grazing_excess) return;
+  ++(certified ? v.missed : v.lost);
+  note(certified ? v.missed_rays : v.lost_rays, text(scene, ray, family, "an exit missed", deficit));
+}
+
 // How deep the surface is that a ray found at t: of a line that only one way met, whether it is more than a touch.
 double depth_after(const StressScene& scene, const Ray& ray, double t) {
   const double radius = scene.oracle().skeleton_distance(ray.at(t));
@@ -168,7 +183,8 @@ void judge(const StressScene& scene, const Ray& ray, const char* family, bool fr
   // Just before the hit the steps would creep up to it; what is nearer to it than this is part of the hit.
   const double end =
       hit ? hit->t - 1e-4 * scene.oracle().skeleton_distance(ray.at(hit->t)) : std::numeric_limits<double>::infinity();
-  judge_free_way(scene, ray, end, record.certified, family, v);
+  if (hit && leaves_from_inside(scene, ray, hit->t)) judge_way_inside(scene, ray, end, record.certified, family, v);
+  else judge_free_way(scene, ray, end, record.certified, family, v);
 }
 
 void Parity::add(const Parity& b) {

@@ -20,6 +20,8 @@ class Oracle {
   std::optional<double> first_root(const Ray&) const;
   /// The largest (corrected field - 1) on [t0, t1], by samples that grow denser towards t0 as a geometric series.
   double largest_excess(const Ray&, double t0, double t1) const;
+  /// The largest (1 - corrected field) on [t0, t1], by the same samples and by evenly spaced ones.
+  double largest_deficit(const Ray&, double t0, double t1) const;
 
   double value(const Vec3d& p) const;
   /// To the nearest skeleton: the radius there, as long as p is on the surface of one skeleton.
