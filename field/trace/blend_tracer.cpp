@@ -7,6 +7,7 @@
 #include "field/trace/block.h"
 #include "field/trace/cell_tree.h"
 #include "field/trace/precision.h"
+#include "field/trace/serial.h"
 
 namespace marrow {
 namespace {
@@ -56,11 +57,6 @@ double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent,
   return best;
 }
 
-std::uint64_t next_number() {
-  static std::atomic<std::uint64_t> last = 0;
-  return ++last;
-}
-
 }  // namespace
 
 struct BlendTracer::State {
@@ -74,7 +70,8 @@ struct BlendTracer::State {
   mutable BlockArena arena;
   CellTree tree;
   Block::Context context;
-  Box3 bounds;  // of all tiles
+  Box3 bounds;                           // of all tiles
+  std::uint64_t serial = next_serial();  // of this tracer
 
   State(BlendField f, const TraceOptions& options, const BlockKernels& k)
       : field(std::move(f)),
@@ -86,8 +83,7 @@ struct BlendTracer::State {
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
         fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
-        context{sources.pieces(),   tree,         cutter, coarse, fine, iso, kernels, field.degree, arena,
-                options.kept_bytes, next_number()} {
+        context{sources.pieces(), tree, cutter, coarse, fine, iso, kernels, field.degree, arena, options.kept_bytes} {
     for (std::size_t i = 0; i < tree.tile_count(); ++i) bounds.include(tree.tile_box(i));
   }
 };
@@ -212,7 +208,7 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
   Root root = state_->kernels.first_root(b.view(), cube.local, query);
   log.evaluations += static_cast<std::uint32_t>(root.evaluations);
   if (root.begins_outside) log.side = CellLog::Side::Outside;
-  if (root.enters_inside && begins_inside(state_->field, state_->bounds, state_->context.tracer, ray)) {
+  if (root.enters_inside && begins_inside(state_->field, state_->bounds, state_->serial, ray)) {
     log.side = CellLog::Side::Inside;
     query.leaving = true;
     root = state_->kernels.first_root(b.view(), cube.local, query);

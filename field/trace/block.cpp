@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "field/trace/level_cache.h"
+#include "field/trace/serial.h"
 #include "field/trace/source_groups.h"
 
 namespace marrow {
@@ -199,6 +200,7 @@ std::uint64_t surface_slots(const Block::Context& context, const FieldLevel& lev
 
 Block::Block(const Context& context, const CellTree::Cell& cell)
     : context_(context),
+      serial_(next_serial()),
       cell_(cell),
       view_{.find_surface = [](const void* owner,
                                int octant) { return static_cast<const Block*>(owner)->surface(octant); },
@@ -229,7 +231,7 @@ std::uint64_t Block::surface(int octant) const {
 template <class Make>
 const BlockLevel& Block::level(const Lazy<BlockLevel>& kept, LevelCache& cache, const Make& make) const {
   if (const BlockLevel* ready = kept.peek()) return *ready;
-  if (BlockArena::bytes_of_all() >= context_.kept_bytes) return cache.get({context_.tracer, this}, make);
+  if (BlockArena::bytes_of_all() >= context_.kept_bytes) return cache.get(serial_, make);
   return kept.get([&] { return std::make_unique<const BlockLevel>(make(context_.arena)); });
 }
 

@@ -32,7 +32,6 @@ class Block {
     int degree;
     BlockArena& arena;       ///< holds what blocks are made of
     std::size_t kept_bytes;  ///< see TraceOptions
-    std::uint64_t tracer;    ///< a number of its own for every tracer of the process
   };
   /// The context must outlive the block.
   Block(const Context&, const CellTree::Cell&);
@@ -53,6 +52,7 @@ class Block {
 
  private:
   const Context& context_;
+  std::uint64_t serial_;
   CellTree::Cell cell_;
   BlockView view_;
   template <class Make>

@@ -34,20 +34,15 @@ class LevelBuffer {
 /// For one thread. What it returns is good until this thread asks again.
 class LevelCache {
  public:
-  struct Key {
-    std::uint64_t tracer;
-    const void* block;
-    bool operator==(const Key&) const = default;
-  };
-
-  /// `make(buffer)` returns a BlockLevel that lies in the buffer.
+  /// `make(buffer)` returns a BlockLevel that lies in the buffer. `block` is the serial number of the block: the
+  /// address of one that is gone may soon be that of another.
   template <class Make>
-  const BlockLevel& get(const Key& key, const Make& make) {
-    Entry& entry = entries_[(reinterpret_cast<std::uintptr_t>(key.block) >> 6) * 0x9e3779b97f4a7c15U >> shift];
-    if (entry.key != key) {
-      entry.key = {};
+  const BlockLevel& get(std::uint64_t block, const Make& make) {
+    Entry& entry = entries_[block * 0x9e3779b97f4a7c15U >> shift];
+    if (entry.block != block) {
+      entry.block = 0;
       entry.level = make(entry.buffer);
-      entry.key = key;
+      entry.block = block;
     }
     return entry.level;
   }
@@ -55,7 +50,7 @@ class LevelCache {
  private:
   static constexpr int bits = 8, shift = 64 - bits;
   struct Entry {
-    Key key{};
+    std::uint64_t block = 0;
     LevelBuffer buffer;
     BlockLevel level;
   };

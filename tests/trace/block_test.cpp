@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -132,6 +133,25 @@ TEST(Block, SlotsHoldAllSurface) {
   }
   std::cout << "  " << surface << " points of surface; slots of a block that may hold some: " << slots / blocks << '\n';
   EXPECT_GT(surface, 2000);
+}
+
+// What a thread remembers of a block that is gone must not be taken for that of one at its address.
+TEST(Block, LevelsThatAreNotKeptAreNeverThoseOfAnotherBlock) {
+  Random random(63);
+  const Stage stage(random_scene(random, {4, contact_alpha(4)}, 8));
+  Block::Context nothing_kept = stage.context;
+  nothing_kept.kept_bytes = 0;
+  std::optional<Block> here;
+  for (std::size_t i = 0; i < std::min<std::size_t>(stage.cells.size(), 50); ++i) {
+    here.emplace(nothing_kept, stage.cells[i]);
+    const Block kept = stage.block(i);
+    for (const auto level : {&Block::coarse, &Block::fine}) {
+      const FieldLevel &a = (*here.*level)().level, &b = (kept.*level)().level;
+      ASSERT_EQ(a.curve_groups, b.curve_groups) << "cell " << i;
+      const std::size_t floats = 4 * monomials_to_degree(b.far_degree);
+      ASSERT_TRUE(std::equal(a.far, a.far + floats, b.far)) << "cell " << i;
+    }
+  }
 }
 
 }  // namespace

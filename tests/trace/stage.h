@@ -44,7 +44,7 @@ struct Stage {
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
         cells(tree.cells()),
         context{sources.pieces(),          tree, cutter, coarse, fine, iso, kernels, field.degree, arena,
-                TraceOptions{}.kept_bytes, 0} {}
+                TraceOptions{}.kept_bytes} {}
 
   Block block(std::size_t cell) const { return Block(context, cells[cell]); }
   double value(const Vec3d& p) const { return corrected_value(field, p); }
