@@ -57,6 +57,12 @@ double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent,
   return best;
 }
 
+CellTreeSettings cells_of(const TraceOptions& options, std::size_t piece_count) {
+  CellTreeSettings settings = options.cells.value_or(cells_for(piece_count));
+  if (options.spacing) settings.spacing = options.spacing;
+  return settings;
+}
+
 }  // namespace
 
 struct BlendTracer::State {
@@ -82,7 +88,7 @@ struct BlendTracer::State {
         kernels(k),
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
         fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
-        tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
+        tree(sources, coarse, fine, iso, kernels, field.degree, cells_of(options, sources.pieces().size())),
         context{sources.pieces(), tree, cutter, coarse, fine, iso, kernels, field.degree, arena, options.kept_bytes} {
     for (std::size_t i = 0; i < tree.tile_count(); ++i) bounds.include(tree.tile_box(i));
   }

@@ -17,6 +17,7 @@
 #include "field/blend/blend_field.h"
 #include "field/math/box3.h"
 #include "field/math/ray.h"
+#include "field/trace/cell_settings.h"
 
 namespace marrow {
 
@@ -31,6 +32,10 @@ struct TraceOptions {
   /// From so much memory of blocks in the process on (1.75 GiB), what blocks hold is not kept but made for each thread
   /// anew, to the same bits. A million segments seen from afar have a million blocks that one or two rays meet.
   std::size_t kept_bytes = std::size_t{7} << 28;
+  /// Empty: by the number of primitives.
+  std::optional<CellTreeSettings> cells{};
+  /// As in CellTreeSettings; may be completed until the first ray comes.
+  std::shared_ptr<const RaySpacing> spacing{};
 };
 
 struct CellHit {

@@ -128,16 +128,23 @@ Surroundings CellTree::coarse_around(const TilePlace& place) const {
   return s;
 }
 
+// A cell narrower than some rays is hardly worth making; but beyond some radii its lists grow too long, and beyond some
+// of the thinnest radii positions in float are too rough (Divider).
+bool CellTree::is_small_enough(const Divider::Octant& octant, const Vec3d& center, double half, int level) const {
+  constexpr double least_rays = 8, most_radii = 12, most_thinnest = 32;
+  if (half <= settings_.cell_size * octant.local_radius || level >= settings_.deepest_level) return true;
+  return settings_.spacing && half <= most_radii * octant.local_radius && half <= most_thinnest * octant.thinnest &&
+         half <= least_rays * settings_.spacing->in_cube(center, half);
+}
+
 std::unique_ptr<const Tile> CellTree::divide(const TilePlace& place) const {
   const CubeView whole{place.center, place.half, coarse_around(place)};
-  const auto fits = [&](double half, const Divider::Octant& octant, int level) {
-    return half <= settings_.cell_size * octant.local_radius || level >= settings_.deepest_level;
-  };
   const auto outer = divider_.octants(whole);
   TileContent content;
   for (int i = 0; i < 8; ++i) {
     if (!outer[static_cast<std::size_t>(i)].mixed) continue;
-    if (fits(place.half / 2, outer[static_cast<std::size_t>(i)], place.level + 1)) {
+    const Vec3d center = octant_center(place.center, place.half, i);
+    if (is_small_enough(outer[static_cast<std::size_t>(i)], center, place.half / 2, place.level + 1)) {
       content.large_cells = static_cast<std::uint8_t>(content.large_cells | 1U << i);
       content.cells |= std::uint64_t{1} << slot_at({i, 0});
       continue;
@@ -146,8 +153,9 @@ std::unique_ptr<const Tile> CellTree::divide(const TilePlace& place) const {
     for (int k = 0; k < 8; ++k) {
       const Divider::Octant& slot = inner[static_cast<std::size_t>(k)];
       if (!slot.mixed) continue;
-      (fits(place.half / 4, slot, place.level + 2) ? content.cells : content.tiles) |= std::uint64_t{1}
-                                                                                       << slot_at({i, k});
+      const bool is_cell =
+          is_small_enough(slot, octant_center(center, place.half / 2, k), place.half / 4, place.level + 2);
+      (is_cell ? content.cells : content.tiles) |= std::uint64_t{1} << slot_at({i, k});
     }
   }
   return std::make_unique<const Tile>(place, whole.sources, content);

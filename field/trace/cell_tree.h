@@ -8,18 +8,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
+#include "field/trace/cell_settings.h"
 #include "field/trace/divider.h"
 #include "field/trace/tile.h"
 
 namespace marrow {
-
-struct CellTreeSettings {
-  double cell_size = 0.5;  ///< half side of a cell over the local radius, at most
-  int tile_levels = 1;     ///< a tile of the first level has 4^tile_levels cells along its side
-  int deepest_level = 40;
-};
 
 /// Safe to use from many threads. Refers to what it is made of.
 class CellTree {
@@ -70,6 +66,7 @@ class CellTree {
 
  private:
   struct Level;
+  bool is_small_enough(const Divider::Octant&, const Vec3d& center, double half, int level) const;
   void expand(const CubeView&, int depth, Level& out) const;
   std::unique_ptr<const Tile> divide(const TilePlace&) const;
   Surroundings coarse_around(const TilePlace&) const;

@@ -86,9 +86,8 @@ std::array<Divider::Octant, 8> Divider::octants(const CubeView& parent) const {
     // Where all is far the field is smooth, and no smaller cube would know more of it.
     octant.local_radius = b.weight > 0 ? parent.half * static_cast<double>(b.weighted_radius / b.weight)
                                        : std::numeric_limits<double>::infinity();
-    if (b.thinness > 0)
-      octant.local_radius =
-          std::min(octant.local_radius, most_over_thinnest * parent.half / static_cast<double>(b.thinness));
+    if (b.thinness > 0) octant.thinnest = parent.half / static_cast<double>(b.thinness);
+    octant.local_radius = std::min(octant.local_radius, most_over_thinnest * octant.thinnest);
   }
   return result;
 }

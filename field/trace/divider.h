@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "field/trace/block_kernels.h"
 #include "field/trace/iso_curve.h"
@@ -31,6 +32,7 @@ class Divider {
   struct Octant {
     bool mixed = false;  ///< may hold surface; else its field is below 1 all over it, or above 1
     double local_radius = 0;
+    double thinnest = std::numeric_limits<double>::infinity();  ///< radius of the thinnest source close by
   };
   std::array<Octant, 8> octants(const CubeView&) const;
   /// One of the eight half-sized cubes.

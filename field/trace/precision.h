@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "field/trace/cell_tree.h"
+#include "field/trace/cell_settings.h"
 #include "field/trace/near_far.h"
 
 namespace marrow {

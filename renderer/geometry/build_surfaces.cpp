@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <memory>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <string>
@@ -13,6 +15,7 @@
 #include <tbb/task_arena.h>
 
 #include "field/base/overloaded.h"
+#include "field/math/elementary.h"
 #include "field/program/field_program.h"
 #include "renderer/geometry/embree_surfaces.h"
 #include "renderer/geometry/field_solid.h"
@@ -21,6 +24,23 @@
 
 namespace marrow {
 namespace {
+
+// Of the pixels of the film, in the coordinates of a blend.
+RaySpacing::View ray_spacing(const SceneDescription& scene, const Affine& local_from_world) {
+  const CameraDescription& camera = scene.camera;
+  const auto& [x, y, z] = local_from_world.columns;
+  RaySpacing::View view{.eye = local_from_world.point(camera.from)};
+  if (camera.type == CameraDescription::Type::Perspective)
+    view.per_distance = 2 * tan(camera.fov_deg * std::numbers::pi / 360) / scene.film.height;
+  else view.constant = camera.height / scene.film.height * std::min({length(x), length(y), length(z)});
+  return view;
+}
+
+// A tracer that several placements share.
+struct Traced {
+  const FieldSolid* solid = nullptr;
+  std::shared_ptr<RaySpacing> spacing = std::make_shared<RaySpacing>();
+};
 
 // Objects one by one into solids and planes; errors of all of them are gathered.
 class Builder {
@@ -52,17 +72,20 @@ class Builder {
       problems.insert(problems.end(), program.why().begin(), program.why().end());
       return;
     }
-    std::map<std::size_t, const FieldSolid*> placed;  // by shape
+    std::map<std::size_t, Traced> placed;  // by shape
     for (const PlacedBlend& part : program->parts()) {
-      const FieldSolid* same = part.shared != 0 ? shared_[part.shared] : part.shape != 0 ? placed[part.shape] : nullptr;
+      Traced alone;
+      Traced& same = part.shared != 0 ? shared_[part.shared] : part.shape != 0 ? placed[part.shape] : alone;
       // The tracer of blends knows the inverse kernel along lines; the general one takes the others.
       if (!untraceable_part(part.blend).empty()) {
         add(TreeSolid::make(tree_of(part), object.material), object, id);
-      } else if (same != nullptr) {
-        solids.push_back({same->placed_again(part, object.material), id});
       } else {
-        same = add(FieldSolid::make(part, object.material, {.instruction_set = options_.isa}), object, id);
-        (part.shared != 0 ? shared_[part.shared] : placed[part.shape]) = same;
+        same.spacing->views.push_back(ray_spacing(scene_, part.local_from_world));
+        if (same.solid != nullptr) solids.push_back({same.solid->placed_again(part, object.material), id});
+        else
+          same.solid =
+              add(FieldSolid::make(part, object.material, {.instruction_set = options_.isa, .spacing = same.spacing}),
+                  object, id);
       }
     }
     for (const FieldTree& tree : program->trees()) add(TreeSolid::make(tree, object.material), object, id);
@@ -86,7 +109,7 @@ class Builder {
  private:
   const SceneDescription& scene_;
   const SurfaceOptions& options_;
-  std::map<std::size_t, const FieldSolid*> shared_;  // by PlacedBlend::shared
+  std::map<std::size_t, Traced> shared_;  // by PlacedBlend::shared
 };
 
 std::string embree_config(const SurfaceOptions& options, int threads) {

@@ -2,6 +2,8 @@
 #include "tests/stress/stress_scene.h"
 
 #include <array>
+#include <limits>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -164,12 +166,26 @@ StressScene::StressScene(std::uint64_t number) {
   focus_size_ = draft.focus_size * factor;
   name_ = std::to_string(number) + " (" + kind_names[kind_] + ", " +
           name_of({blend_.degree, blend_.alpha, blend_.cavity}) + ", scale " + std::to_string(factor) + ")";
-  build();
+  build(number);
 }
 
-void StressScene::build() {
+// Half of the scenes are divided for many rays; the others for so few that cells are as large as they may be, in tiles
+// of small or of many primitives.
+TraceOptions options_of(std::uint64_t number) {
+  TraceOptions options;
+  const std::uint64_t way = number / kind_names.size() % 4;
+  if (way >= 2) {
+    RaySpacing few;
+    few.views.push_back({.eye = {}, .constant = std::numeric_limits<double>::infinity()});
+    options.spacing = std::make_shared<const RaySpacing>(few);
+  }
+  if (way == 3) options.cells = {.cell_size = 1.6, .tile_levels = 2};
+  return options;
+}
+
+void StressScene::build(std::uint64_t number) {
   expect_far_space_is_dropped(blend_);
-  auto solid = FieldSolid::make({blend_, {}, {}}, MaterialId{}, {});
+  auto solid = FieldSolid::make({blend_, {}, {}}, MaterialId{}, options_of(number));
   if (!solid) throw std::runtime_error("scene " + name_ + " cannot be traced");
   std::vector<PlacedSolid> solids;
   solids.push_back({std::move(*solid), ObjectId{0}});

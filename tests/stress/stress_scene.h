@@ -35,7 +35,7 @@ class StressScene {
   Box3 random_cell(Random&) const;
 
  private:
-  void build();
+  void build(std::uint64_t number);
 
   std::size_t kind_ = 0;
   std::string name_;

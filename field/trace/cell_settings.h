@@ -1,0 +1,18 @@
+// How finely space is divided.
+#pragma once
+
+#include <memory>
+
+#include "field/trace/ray_spacing.h"
+
+namespace marrow {
+
+struct CellTreeSettings {
+  double cell_size = 0.5;  ///< half side of a cell over the local radius, at most
+  int tile_levels = 1;     ///< a tile of the first level has 4^tile_levels cells along its side
+  int deepest_level = 40;
+  /// Where rays are few cells may be larger than that, up to half a tile; null: rays are many everywhere.
+  std::shared_ptr<const RaySpacing> spacing{};
+};
+
+}  // namespace marrow

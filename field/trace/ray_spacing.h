@@ -1,0 +1,24 @@
+// How far apart the rays of a camera are, so that cells that one or two rays meet are not made.
+#pragma once
+
+#include <vector>
+
+#include "field/math/vec3.h"
+
+namespace marrow {
+
+/// Of one blend, from everywhere it is placed, in its own coordinates. A hint: cells are larger where rays are few, and
+/// nothing else depends on it.
+struct RaySpacing {
+  /// Neighbouring rays are `constant + per_distance |p - eye|` apart at p.
+  struct View {
+    Vec3d eye;
+    double constant = 0, per_distance = 0;
+  };
+  std::vector<View> views;
+
+  /// The least in a cube; 0 without views.
+  double in_cube(const Vec3d& center, double half) const;
+};
+
+}  // namespace marrow
