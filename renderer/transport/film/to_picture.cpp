@@ -1,5 +1,9 @@
 // From sums to channels: here double becomes float.
 #include <string>
+#include <vector>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include "renderer/transport/film/film.h"
 
@@ -8,9 +12,11 @@ namespace {
 
 template <class T, class F>
 void add_channel(Picture& picture, const Film& film, std::string name, F value) {
-  std::vector<T> samples;
-  samples.reserve(film.pixels().size());
-  for (const PixelSums& pixel : film.pixels()) samples.push_back(static_cast<T>(value(pixel)));
+  const auto& pixels = film.pixels();
+  std::vector<T> samples(pixels.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size()), [&](const auto& part) {
+    for (std::size_t i = part.begin(); i < part.end(); ++i) samples[i] = static_cast<T>(value(pixels[i]));
+  });
   picture.channels.push_back({std::move(name), std::move(samples)});
 }
 
