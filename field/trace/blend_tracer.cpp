@@ -133,9 +133,12 @@ struct BlendTracer::State {
     for (std::size_t i = 0; i < tree.tile_count(); ++i) bounds.include(tree.tile_box(i));
   }
 
-  // dC/dalpha is below 1 at the surface (checked numerically); the share of alpha is a quotient of sums of some 1.
+  // |dC/dalpha| <= n - 1 at the surface: |g(f) - G| at alpha = pi/2, with g(1) = n - 1 and G <= 2 g (tracing.md 2);
+  // checked numerically for other angles. The share of alpha is a quotient of sums of some 1. What is known of strands is
+  // an estimate.
   double largest_error(const BlockLevel& level) const {
-    const double turned = range ? (range->most - range->least) * (level.angle_error + level.f_error) : 0;
+    const double range_of_angles = range ? range->most - range->least : 0, steepest = field.degree - 1;
+    const double turned = steepest * range_of_angles * (level.angle_error + level.f_error);
     return level.f_error + level.gradient_error / field.degree + turned;
   }
 };

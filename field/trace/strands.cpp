@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "field/blend/blend_field.h"
@@ -194,16 +195,28 @@ namespace {
 
 // The quadratic of degree 2 of f leaves binom(n + 2, 3) q^3 of each of its sources [tracing.md B5], which a fit over
 // the cube halves and more; f u^8 bends some eight times as much where strands turn.
-double error_of(const StrandSamples& s) { return 10 * static_cast<double>(s.error); }
+double error_of(const StrandSamples& s) {
+  return std::isfinite(s.error) ? 10 * static_cast<double>(s.error) : std::numeric_limits<double>::max();
+}
 
 double field_at_center(const StrandSamples& s) { return std::min(1.0, static_cast<double>(s.sums[0][0])); }
 
 }  // namespace
 
+// The error up to which strands must be folded so that no more than `most` are left.
+double Strands::largest_forced(const std::vector<Probed>& probed, std::size_t most) {
+  if (probed.size() <= most) return -1;
+  std::vector<double> errors;
+  for (const Probed& p : probed) errors.push_back(error_of(p.samples));
+  const auto last = errors.begin() + static_cast<std::ptrdiff_t>(probed.size() - most - 1);
+  std::nth_element(errors.begin(), last, errors.end());
+  return *last;
+}
+
 // Folds what is far. alpha is a mean over pairs, and what one strand may be off counts against the field of all strands
 // but the strongest.
 StrandView Strands::fold(std::vector<Probed>& probed, const Cube& cube, const StrandView* parent,
-                         const Cube& parent_cube, std::vector<float>& values) const {
+                         const Cube& parent_cube, std::size_t most, std::vector<float>& values) const {
   StrandView view;
   values.assign(static_cast<std::size_t>(strand_places) * tensor_floats, 0.0F);
   if (parent != nullptr)
@@ -223,12 +236,14 @@ StrandView Strands::fold(std::vector<Probed>& probed, const Cube& cube, const St
     view.far_inverse2 = parent->far_inverse2;
     view.error = parent->error;
   }
+  const double forced = largest_forced(probed, most);
   std::erase_if(probed, [&](const Probed& p) {
     const double error = error_of(p.samples);
     const bool far = static_cast<double>(p.samples.ratio) <= largest_ratio && error <= fold_budget * others;
-    if (!far) return false;
+    if (!far && !(error <= forced)) return false;
     for (std::size_t k = 0; k < strand_places; ++k)
-      kernels_.add_strand(p.samples.sums[k], values.data() + k * tensor_floats);
+      if (std::isfinite(p.samples.sums[k][0]))
+        kernels_.add_strand(p.samples.sums[k], values.data() + k * tensor_floats);
     const float* m = p.samples.sums[0];
     const double f = static_cast<double>(m[0]), b = p.inverse2, n = degree_;
     const double c = f > 0 ? std::clamp(length(Vec3d{m[1], m[2], m[3]}) / f, 0.05, 1.0) : 1;
@@ -262,7 +277,7 @@ const StrandView& Strands::around(const Tile& tile) const {
     }
     const Cube outer = parent != nullptr ? Cube{place.parent->place().center, place.parent->place().half} : cube;
     std::vector<float> values;
-    return std::make_unique<const StrandView>(fold(probed, cube, parent, outer, values));
+    return std::make_unique<const StrandView>(fold(probed, cube, parent, outer, probed.size(), values));
   });
 }
 
@@ -304,8 +319,9 @@ CellStrands Strands::around(const Tile& tile, const Vec3d& center, double half,
   for (const std::uint32_t s : parent.near)  // a point that is listed is all of its strand
     if (!strands_[s].is_point || pieces_of(s).empty()) probed.push_back(probe(s, cube, {}));
   std::vector<float> values;
-  CellStrands cell{
-      .view = fold(probed, cube, &parent, {tile.place().center, tile.place().half}, values), .rest = {}, .far = {}};
+  CellStrands cell{.view = fold(probed, cube, &parent, {tile.place().center, tile.place().half}, most_strands, values),
+                   .rest = {},
+                   .far = {}};
   for (Probed& p : probed) {
     if (const auto listed = pieces_of(p.strand); !listed.empty()) p = probe(p.strand, cube, listed);
     StrandRest& rest = cell.rest.emplace_back(StrandRest{p.strand, {}});

@@ -73,9 +73,10 @@ class Strands {
   void add_nodes(const Piece&, std::uint32_t index, int& lane);
   const StrandView& around(const Tile&) const;
   Probed probe(std::uint32_t strand, const Cube&, std::span<const std::uint32_t> left_out) const;
-  // Values of the tensor at the places of the cube.
+  static double largest_forced(const std::vector<Probed>&, std::size_t most);
+  // Leaves at most `most` to count one by one. `values`: of the tensor, at the places of the cube.
   StrandView fold(std::vector<Probed>&, const Cube&, const StrandView* parent, const Cube& parent_cube,
-                  std::vector<float>& values) const;
+                  std::size_t most, std::vector<float>& values) const;
 
   std::span<const Piece> pieces_;
   const BlockKernels& kernels_;

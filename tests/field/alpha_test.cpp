@@ -157,7 +157,15 @@ TEST(Alpha, IsASingleOneWhereTheRuleGivesNoOther) {
   blend.direction_bounds = {{0.3, 1.5}, {0.3, 1.5}, {0.3, 1.5}};
   EXPECT_EQ(single_angle(blend), 0.3);
   EXPECT_NEAR(alpha_at(blend, {0.4, 1.2, -0.3}).value, 0.3, 1e-15);
+  blend.segments.add({{0, 0, 0}, {1, 0, 0}, 0.2, 0.2}, {});
+  blend.segments.strands = {3};
+  blend.direction_bounds.push_back({0.3, 1.5});
+  EXPECT_FALSE(single_angle(blend));
+  EXPECT_TRUE(untraceable_part(blend).empty());
   blend.direction_bounds[1].most = 1.4;
+  EXPECT_FALSE(untraceable_part(blend).empty());
+  blend.segments = {};
+  blend.direction_bounds.pop_back();
   EXPECT_FALSE(single_angle(blend));
   blend.direction_bounds.clear();
   blend.alpha_per_skeleton = true;
