@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "field/blend/gather.h"
 #include "field/blend/primitive_visit.h"
@@ -70,6 +71,65 @@ double corrected_value(const BlendField& blend, const Vec3d& p) {
   return correction_with(blend, alpha.value).value(sum.value, length(sum.si_gradient));
 }
 
+namespace {
+
+bool are_equal(const auto& values) {
+  return std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end();
+}
+
+// Of primitives that have angles; nothing when they differ.
+std::optional<double> common_angle(const BlendField& blend) {
+  std::vector<double> all;
+  blend.for_each_list([&](const auto& list) {
+    for (const auto* angles : {&list.alphas, &list.alphas_to}) all.insert(all.end(), angles->begin(), angles->end());
+  });
+  return !all.empty() && are_equal(all) ? std::optional(all.front()) : std::nullopt;
+}
+
+bool has_repeated_strand(const std::vector<std::uint32_t>& strands) {
+  return std::adjacent_find(strands.begin(), strands.end()) != strands.end();
+}
+
+// The tracer of blends wants one pair of bounds for all strands, and points that are strands by themselves.
+std::string untraceable_directions(const BlendField& blend) {
+  const DirectionBounds& bounds = blend.direction_bounds.front();
+  if (!are_equal(blend.direction_bounds))
+    return "directions with bounds for each strand are not known to the tracer of blends";
+  if (bounds.least < 0 || bounds.least > bounds.most)
+    return "directions with an angle below 0, or a larger one for crossing strands, are not known to the tracer of "
+           "blends";
+  if (has_repeated_strand(blend.points.strands)) return "points of one strand are not known to the tracer of blends";
+  return {};
+}
+
+// For a range of angles the tracer has bounds above 0 only, for angles that each primitive has one of.
+std::string untraceable_angles(const BlendField& blend) {
+  const auto unknown = [](const std::string& what) { return what + " is not known to the tracer of blends"; };
+  if (!blend.cavity) return unknown("`cavity: false` with an `alpha` that varies");
+  if (single_angle(blend)) return {};
+  if (!blend.direction_bounds.empty()) return untraceable_directions(blend);
+  if (!blend.alpha_per_skeleton) return unknown("an `alpha` that varies other than by skeleton or direction");
+  bool negative = false, linear = false;
+  blend.for_each_list([&](const auto& list) {
+    for (const double alpha : list.alphas) negative = negative || alpha < 0;
+    linear = linear || (!list.alphas_to.empty() && list.alphas_to != list.alphas);
+  });
+  if (negative) return unknown("an `alpha` below 0 among several");
+  return linear ? unknown("an `alpha` that varies along a skeleton") : std::string{};
+}
+
+}  // namespace
+
+std::optional<double> single_angle(const BlendField& blend) {
+  if (!blend.alpha_varies()) return blend.alpha;
+  if (blend.alpha_per_skeleton) return common_angle(blend);
+  if (blend.direction_bounds.size() == 1) return blend.direction_bounds.front().most;
+  const bool points_alone = blend.points.size() == blend.size() && blend.points.size() > 1;
+  if (points_alone && blend.direction_bounds.size() > 1 && are_equal(blend.direction_bounds))
+    return blend.direction_bounds.front().least;
+  return {};
+}
+
 std::string untraceable_part(const BlendField& blend) {
   const auto evaluated_only = [](const std::string& what) { return what + " is not known to the tracer of blends"; };
   if (blend.kernel == KernelFamily::Cauchy) return evaluated_only("`kernel: {cauchy: …}`");
@@ -79,9 +139,7 @@ std::string untraceable_part(const BlendField& blend) {
   if (!blend.cani_hornus_segments.empty()) return evaluated_only("`model: cani_hornus`");
   if (!blend.triangles.empty()) return evaluated_only("`triangle`");
   if (!blend.arcs.empty()) return evaluated_only("`circle` or `arc`");
-  if (blend.alpha_per_skeleton) return evaluated_only("`alpha: per_skeleton` or `alpha: {attribute: …}`");
-  if (blend.alpha_varies()) return evaluated_only("an `alpha` that varies");
-  return {};
+  return blend.alpha_varies() ? untraceable_angles(blend) : std::string{};
 }
 
 MaterialId strongest_material(const BlendField& blend, const Vec3d& p) {

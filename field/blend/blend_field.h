@@ -117,6 +117,10 @@ Correction correction_of(const BlendField&);
 /// Where the sum is 0 or infinite: the alpha of the blend, without gradient.
 AlphaSample alpha_at(const BlendField&, const Vec3d& p);
 
+/// The angle of a blend whose rule gives the same one everywhere (but where the sum is 0 or infinite): constant, or of
+/// skeletons that all have the same one, or by the directions of two or more points, which have none and so all cross.
+std::optional<double> single_angle(const BlendField&);
+
 /// What of a blend the tracer of blends has no bounds for, as a message; empty when it can trace all of it. The tracer
 /// of general trees takes any blend.
 std::string untraceable_part(const BlendField&);

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "field/trace/angle_field.h"
 #include "field/trace/block.h"
 #include "field/trace/cell_tree.h"
 #include "field/trace/precision.h"
 #include "field/trace/serial.h"
+#include "field/trace/strands.h"
 
 namespace marrow {
 namespace {
@@ -30,6 +32,18 @@ std::pair<double, double> clip(const Box3& box, const Ray& ray, const Vec3d& inv
 
 Vec3d vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
+// IsoCurve::margin() for all shares that alpha may have on a step along the normal, as in march.h.
+double margin_of_shares(const PointField& f, const Vec3d& normal, double step, const BlockLevel& fine,
+                        const IsoCurve& iso, double x, double y, double n) {
+  const double left = 1 - (4 * n + 2) * step / f.nearest;
+  if (!(left > 0.1) || !(f.share_bend < std::numeric_limits<float>::infinity()))
+    return std::min(iso.margin(x, y, 0), iso.margin(x, y, 1));
+  const double move = dot(vec(f.share_gradient), normal) * step, bend = f.share_bend * step * step;
+  const double error = 2 * (fine.angle_error + f.share * fine.f_error) / std::max(1e-20F, f.f) + 1e-5;
+  return std::min(iso.margin(x, y, f.share + (std::min(0.0, move - bend) - error) / left),
+                  iso.margin(x, y, f.share + (std::max(0.0, move + bend) + error) / left));
+}
+
 // How far to go along the normal until the field is certainly below 1: f and |G| there are bounded by their Taylor
 // polynomials and the remainders B3 and B4 of tracing.md, with series sums up to twice their values at 0 (a step of at
 // most a tenth of the distance). Twice the errors of the block, since a ray may start in its neighbour. Where no step
@@ -47,6 +61,7 @@ double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent,
     const double y =
         length(vec(f.si_gradient) + bent * step) + f.third * (n + 1) * (n + 2) * step * step + 2 * fine.gradient_error;
     double margin = iso.margin(x * raise, y * raise);
+    if (iso.views().size() > 1) margin = margin_of_shares(f, normal, step, fine, iso, x * raise, y * raise, n);
     if (iso.two_sided()) margin = std::min(margin, iso.margin(std::max(0.0, x_low / raise), y * raise));
     if (margin > enough) return step;
     if (margin > largest) {
@@ -63,15 +78,24 @@ CellTreeSettings cells_of(const TraceOptions& options, std::size_t piece_count) 
   return settings;
 }
 
+// With the angle at which most is inside, where it varies.
+Correction correction_for(const BlendField& field) {
+  const auto range = angle_range(field);
+  const double alpha = range ? range->least : single_angle(field).value_or(field.alpha);
+  return Correction(field.degree, alpha, field.cavity, field.projection);
+}
+
 }  // namespace
 
 struct BlendTracer::State {
   BlendField field;
   Correction correction;
+  std::optional<AngleRange> range;  // of an alpha that varies
   IsoCurve iso;
   PieceCutter cutter;
-  SourceTree sources;
+  SourceTree sources, angle_sources;  // the second one where skeletons have an angle each
   const BlockKernels& kernels;
+  std::optional<Strands> strands;  // where their directions give the angle
   NearFar coarse, fine;
   mutable BlockArena arena;
   CellTree tree;
@@ -81,16 +105,43 @@ struct BlendTracer::State {
 
   State(BlendField f, const TraceOptions& options, const BlockKernels& k)
       : field(std::move(f)),
-        correction(correction_of(field)),
-        iso(correction, field.alpha),
+        correction(correction_for(field)),
+        range(angle_range(field)),
+        iso(range ? IsoCurve(correction, range->least, range->most) : IsoCurve(correction, correction.alpha())),
         cutter(field.degree, iso.critical_field()),
         sources(cutter.cut(field), field.degree),
+        angle_sources(
+            range && field.alpha_per_skeleton ? angle_pieces(field, *range, cutter.cut(field)) : std::vector<Piece>{},
+            field.degree),
         kernels(k),
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
         fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_of(options, sources.pieces().size())),
-        context{sources.pieces(), tree, cutter, coarse, fine, iso, kernels, field.degree, arena, options.kept_bytes} {
+        context{sources.pieces(),
+                tree,
+                cutter,
+                coarse,
+                fine,
+                iso,
+                kernels,
+                field.degree,
+                arena,
+                options.kept_bytes,
+                range && field.alpha_per_skeleton ? &angle_sources : nullptr} {
+    if (range && !field.alpha_per_skeleton) {
+      strands.emplace(field, sources.pieces(), kernels);
+      context.strands = &*strands;
+    }
     for (std::size_t i = 0; i < tree.tile_count(); ++i) bounds.include(tree.tile_box(i));
+  }
+
+  // |dC/dalpha| <= n - 1 at the surface: |g(f) - G| at alpha = pi/2, with g(1) = n - 1 and G <= 2 g (tracing.md 2);
+  // checked numerically for other angles. The share of alpha is a quotient of sums of some 1. What is known of strands
+  // is an estimate.
+  double largest_error(const BlockLevel& level) const {
+    const double range_of_angles = range ? range->most - range->least : 0, steepest = field.degree - 1;
+    const double turned = steepest * range_of_angles * (level.angle_error + level.f_error);
+    return level.f_error + level.gradient_error / field.degree + turned;
   }
 };
 
@@ -100,7 +151,7 @@ Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const T
   if (kernels == nullptr)
     return failure("instruction set \"" + options.instruction_set + "\" is unknown or not of this machine");
   // Without an f from which on all is inside, no distance to a skeleton is certainly inside.
-  if (!(critical_field_of(correction_of(field)) < 100))
+  if (!(critical_field_of(correction_for(field)) < 100))
     return failure(
         "`cavity: false` with so small an `alpha` lets holes open anywhere inside; it can be evaluated (probe, slice) "
         "but not rendered");
@@ -241,9 +292,11 @@ SurfacePoint BlendTracer::surface_at(const Block& b, const Vec3d& position) cons
                  h[4] * v.x + h[5] * v.y + h[2] * v.z};
   };
   const double y = length(g);
-  const IsoCurve::Slope c = state_->iso.gradient(f.f, y);
+  const IsoCurve::Gradient c = state_->iso.gradient(f.f, y, f.share);
+  Vec3d growth = gradient * c.x + bend(g) * (c.y / std::max(y, 1e-12));
+  if (state_->range) growth += vec(f.share_gradient) * c.share;
   SurfacePoint out;
-  out.normal = normalize(-(gradient * c.x + bend(g) * (c.y / std::max(y, 1e-12))));
+  out.normal = normalize(-growth);
   out.outside = position + out.normal * (b.half() * step_outside(f, out.normal, bend(out.normal), b.fine(), state_->iso,
                                                                  state_->field.degree));
   return out;
@@ -264,7 +317,7 @@ TraceStatistics BlendTracer::statistics() const {
       const BlockLevel* fine = b->fine_if_kept();
       if (fine == nullptr) continue;
       s.sources += static_cast<std::size_t>((fine->level.curve_groups + fine->level.point_groups) * lanes);
-      s.largest_error = std::max(s.largest_error, fine->f_error + fine->gradient_error / state_->field.degree);
+      s.largest_error = std::max(s.largest_error, state_->largest_error(*fine));
     }
   });
   return s;

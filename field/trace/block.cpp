@@ -3,10 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <new>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "field/trace/level_cache.h"
 #include "field/trace/serial.h"
 #include "field/trace/source_groups.h"
+#include "field/trace/strand_axes.h"
+#include "field/trace/strands.h"
 
 namespace marrow {
 namespace {
@@ -106,17 +113,28 @@ struct Level {
   std::size_t source_floats() const {
     return static_cast<std::size_t>((curves.group_count() + points.group_count()) * floats_per_group);
   }
+  std::size_t floats() const { return source_floats() + 4 * monomials_to_degree(far_degree); }
 };
 
-Level make_level(const Block::Context& context, const NearFar& precision, const Surroundings& around,
-                 const CellTree::Cell& cell, int far_degree) {
+Level make_level(const Block::Context& context, const NearFar& precision, std::span<const Piece> pieces,
+                 const Surroundings& around, const CellTree::Cell& cell, int far_degree) {
   SourceEmitter emitter(context, precision, cell.center, cell.half);
-  for (const SourceRef ref : around.near) emitter.emit(context.pieces[ref.index()]);
+  for (const SourceRef ref : around.near) emitter.emit(pieces[ref.index()]);
   Level level{std::move(emitter.curves), std::move(emitter.points), around.far, far_degree};
   level.far.f_error += emitter.f_error;
   level.far.gradient_error += emitter.gradient_error;
   truncate(level.far, far_degree);
   return level;
+}
+
+// The field of angles, at the same errors, from its own tree; nothing where alpha is constant.
+std::optional<Level> make_angle_level(const Block::Context& context, const NearFar& precision,
+                                      const CellTree::Cell& cell, int far_degree) {
+  if (context.angle == nullptr) return {};
+  constexpr double open_all = -1;
+  Surroundings s;
+  s.near = precision.split(*context.angle, context.angle->roots(), cell.center, cell.half, open_all, s.far);
+  return make_level(context, precision, context.angle->pieces(), s, cell, far_degree);
 }
 
 // The largest first derivative and half of the largest second one along any line in the cube, of f and of G. A monomial
@@ -145,27 +163,135 @@ struct FarRange {
   static float length(const std::array<float, 4>& v) { return std::sqrt(v[1] * v[1] + v[2] * v[2] + v[3] * v[3]); }
 };
 
-template <class Memory>
-BlockLevel write_level(const Level& level, Memory& memory) {
+FieldLevel write_field(const Level& level, float* sources) {
   const auto curve_floats = static_cast<std::size_t>(level.curves.group_count() * floats_per_group);
-  const std::size_t monomials = monomials_to_degree(level.far_degree);
-  float* const sources = memory.allocate(level.source_floats() + 4 * monomials);
   float* const far = sources + level.source_floats();
   std::copy_n(level.curves.data(), curve_floats, sources);
   std::copy_n(level.points.data(), level.source_floats() - curve_floats, sources + curve_floats);
+  const std::size_t monomials = monomials_to_degree(level.far_degree);
   write_far(level.far, monomials, far);
   const FarRange range(far, monomials);
-  return {.level = {.sources = sources,
-                    .curve_groups = level.curves.group_count(),
-                    .point_groups = level.points.group_count(),
-                    .far_degree = level.far_degree,
-                    .far = far,
-                    .far_slope = range.slope[0],
-                    .far_g_slope = FarRange::length(range.slope),
-                    .far_bend = range.bend[0],
-                    .far_g_bend = FarRange::length(range.bend)},
-          .f_error = level.far.f_error,
-          .gradient_error = level.far.gradient_error};
+  return {.sources = sources,
+          .curve_groups = level.curves.group_count(),
+          .point_groups = level.points.group_count(),
+          .far_degree = level.far_degree,
+          .far = far,
+          .far_slope = range.slope[0],
+          .far_g_slope = FarRange::length(range.slope),
+          .far_bend = range.bend[0],
+          .far_g_bend = FarRange::length(range.bend)};
+}
+
+// The near pieces strand by strand, each with groups of its own; then what has been counted among the far strands.
+struct StrandedLevel {
+  Level level;
+  CellStrands seen;
+  std::vector<int> groups;        // of each strand of `seen`
+  std::vector<float> directions;  // as StrandLevel::directions
+  int lanes_told = 0;             // of the curves
+};
+
+StrandedLevel make_stranded_level(const Block::Context& context, const CellTree::Cell& cell) {
+  const Surroundings around = context.tree.surroundings(cell);
+  const Strands& strands = *context.strands;
+  std::vector<std::uint32_t> near;
+  for (const SourceRef ref : around.near) near.push_back(ref.index());
+  std::sort(near.begin(), near.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(strands.strand_of(a), a) < std::pair(strands.strand_of(b), b);
+  });
+  StrandedLevel out{.level = {.curves = {}, .points = {}, .far = around.far, .far_degree = field_degree},
+                    .seen = strands.around(*cell.tile, cell.center, cell.half, near),
+                    .groups = {},
+                    .directions = {}};
+  SourceEmitter emitter(context, context.fine, cell.center, cell.half);
+  const auto emit = [&](std::uint32_t piece) {
+    emitter.emit(context.pieces[piece]);
+    const Vec3d u = strands.direction(piece);
+    out.directions.resize(static_cast<std::size_t>(emitter.curves.group_count()) * 3 * lanes);
+    for (int lane = out.lanes_told; lane < emitter.curves.count(); ++lane)
+      for (std::size_t k = 0; k < 3; ++k)
+        out.directions[static_cast<std::size_t>(lane / lanes * 3 * lanes + lane % lanes) + k * lanes] =
+            static_cast<float>(u[k]);
+    out.lanes_told = emitter.curves.count();
+  };
+  std::size_t at = 0;
+  std::vector<std::uint32_t> counted;
+  for (const std::uint32_t strand : out.seen.view.near) {
+    for (; at < near.size() && strands.strand_of(near[at]) < strand; ++at) counted.push_back(near[at]);
+    const int before = emitter.curves.group_count();
+    for (; at < near.size() && strands.strand_of(near[at]) == strand; ++at) emit(near[at]);
+    emitter.curves.end_group();
+    out.lanes_told = emitter.curves.count();
+    out.groups.push_back(emitter.curves.group_count() - before);
+  }
+  counted.insert(counted.end(), near.begin() + static_cast<std::ptrdiff_t>(at), near.end());
+  for (const std::uint32_t piece : counted) emit(piece);
+  out.level.curves = std::move(emitter.curves);
+  out.level.points = std::move(emitter.points);
+  out.level.far.f_error += emitter.f_error;
+  out.level.far.gradient_error += emitter.gradient_error;
+  return out;
+}
+
+// Whether the errors count wherever "outside" is to be proved, or are only stated.
+enum class Errors { Counted, Stated };
+
+// In one piece of memory: the level, then the field of angles, then what refers to it.
+template <class Memory>
+BlockLevel write_level(const Level& level, const std::optional<Level>& angle, Errors errors, Memory& memory) {
+  const auto floats_of = [](const Level& l) { return (l.floats() + lanes - 1) / lanes * lanes; };
+  constexpr std::size_t reference_floats = (sizeof(FieldLevel) + sizeof(float) - 1) / sizeof(float);
+  const std::size_t own = floats_of(level), second = angle ? floats_of(*angle) : 0;
+  float* const at = memory.allocate(own + second + (angle ? reference_floats : 0));
+  const double counted = errors == Errors::Counted ? 1.0001 : 0;
+  BlockLevel out{
+      .level = write_field(level, at), .f_error = level.far.f_error, .gradient_error = level.far.gradient_error};
+  out.level.f_error = static_cast<float>(counted * out.f_error);
+  out.level.g_error = static_cast<float>(counted * out.gradient_error);
+  if (angle) {
+    auto* const reference = new (at + own + second) FieldLevel(write_field(*angle, at + own));
+    out.angle_error = angle->far.f_error;
+    reference->f_error = static_cast<float>(counted * out.angle_error);
+    out.level.angle = reference;
+  }
+  return out;
+}
+
+// The level, then its directions, the far strands, the rests of near ones, the counts of their groups, and what refers
+// to them.
+template <class Memory>
+BlockLevel write_stranded_level(const StrandedLevel& from, double half, Memory& memory) {
+  const auto floats_of = [](std::size_t n) { return (n + lanes - 1) / lanes * lanes; };
+  constexpr std::size_t reference_floats = (sizeof(StrandLevel) + sizeof(float) - 1) / sizeof(float);
+  const CellStrands& seen = from.seen;
+  const std::size_t own = floats_of(from.level.floats()), count = from.groups.size();
+  const std::size_t stride = floats_of(count), row = 4 * stride;
+  float* const at = memory.allocate(own + from.directions.size() + seen.far.size() + quadratic_monomials * row +
+                                    stride + reference_floats);
+  float* const directions = at + own;
+  float* const far = std::copy(from.directions.begin(), from.directions.end(), directions);
+  float* const rest = std::copy(seen.far.begin(), seen.far.end(), far);
+  std::fill_n(rest, quadratic_monomials * row, 0.0F);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t m = 0; m < quadratic_monomials; ++m)
+      for (std::size_t k = 0; k < 4; ++k) rest[m * row + k * stride + i] = seen.rest[i].sums[4 * m + k];
+  auto* const groups = reinterpret_cast<int*>(rest + quadratic_monomials * row);
+  std::uninitialized_copy(from.groups.begin(), from.groups.end(), groups);
+  auto* const reference = new (rest + quadratic_monomials * row + stride)
+      StrandLevel{.directions = directions,
+                  .groups = groups,
+                  .rest = rest,
+                  .count = static_cast<int>(count),
+                  .far = far,
+                  .axes = strand_axes(),
+                  .far_inverse2 = static_cast<float>(seen.view.far_inverse2 * half * half)};
+  for (int i = 0; i < 3; ++i) reference->far_bend[i] = static_cast<float>(seen.view.far_bend[i] * half * half);
+  BlockLevel out{.level = write_field(from.level, at),
+                 .f_error = from.level.far.f_error,
+                 .gradient_error = from.level.far.gradient_error,
+                 .angle_error = seen.view.error};
+  out.level.strands = reference;
+  return out;
 }
 
 bool holds_surface(const CubeBounds& b, const IsoCurve& iso) {
@@ -212,7 +338,9 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
             },
             .owner = this,
             .degree = context.degree,
-            .iso = context.iso.view()} {
+            .iso = context.iso.view(),
+            .rows = context.iso.views().data(),
+            .row_count = static_cast<int>(context.iso.views().size())} {
   for (int octant = 0; octant < 8; ++octant)
     if (may_hold(context, coarse().level, octant_center({0, 0, 0}, 1, octant), 0.5)) octants_ |= 1U << octant;
 }
@@ -238,20 +366,20 @@ const BlockLevel& Block::level(const Lazy<BlockLevel>& kept, LevelCache& cache, 
 const BlockLevel& Block::coarse() const {
   thread_local LevelCache cache;
   return level(coarse_, cache, [&](auto& memory) {
-    const Level level =
-        make_level(context_, context_.coarse, context_.tree.coarse_surroundings(cell_), cell_, coarse_far_degree);
-    BlockLevel coarse = write_level(level, memory);
-    coarse.level.f_error = static_cast<float>(1.0001 * coarse.f_error);
-    coarse.level.g_error = static_cast<float>(1.0001 * coarse.gradient_error);
-    return coarse;
+    return write_level(make_level(context_, context_.coarse, context_.pieces, context_.tree.coarse_surroundings(cell_),
+                                  cell_, coarse_far_degree),
+                       make_angle_level(context_, context_.coarse, cell_, coarse_far_degree), Errors::Counted, memory);
   });
 }
 
 const BlockLevel& Block::fine() const {
   thread_local LevelCache cache;
   return level(fine_, cache, [&](auto& memory) {
-    return write_level(make_level(context_, context_.fine, context_.tree.surroundings(cell_), cell_, field_degree),
-                       memory);
+    if (context_.strands != nullptr)
+      return write_stranded_level(make_stranded_level(context_, cell_), cell_.half, memory);
+    return write_level(
+        make_level(context_, context_.fine, context_.pieces, context_.tree.surroundings(cell_), cell_, field_degree),
+        make_angle_level(context_, context_.fine, cell_, field_degree), Errors::Stated, memory);
   });
 }
 

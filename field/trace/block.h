@@ -16,6 +16,7 @@
 namespace marrow {
 
 class LevelCache;
+class Strands;
 
 /// Coordinates of the block: x = (p - center) / half. Its levels are made when the first ray needs them; safe to use
 /// from many threads.
@@ -30,8 +31,10 @@ class Block {
     const IsoCurve& iso;
     const BlockKernels& kernels;
     int degree;
-    BlockArena& arena;       ///< holds what blocks are made of
-    std::size_t kept_bytes;  ///< see TraceOptions
+    BlockArena& arena;                  ///< holds what blocks are made of
+    std::size_t kept_bytes;             ///< see TraceOptions
+    const SourceTree* angle = nullptr;  ///< of angle_field.h, where skeletons have an angle each
+    const Strands* strands = nullptr;   ///< where their directions give the angle
   };
   /// The context must outlive the block.
   Block(const Context&, const CellTree::Cell&);

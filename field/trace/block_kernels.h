@@ -17,6 +17,24 @@ namespace marrow {
 inline constexpr int lanes = 16;
 inline constexpr int floats_per_group = 5 * lanes;  ///< x[16] y[16] z[16] weight[16] radius[16]
 
+inline constexpr int tensor_floats = 48;  ///< 45 components of a tensor of degree 8; sums of f, f^2, f^2 with direction
+inline constexpr int most_strands = 512;  ///< that a block lists
+inline constexpr int quadratic_monomials = 10;  ///< 1 x y z xx yy zz xy xz yz
+
+/// The strands of a fine level, whose directions give the angle (strands.h).
+struct StrandLevel {
+  const float* directions = nullptr;  ///< of each source of the curve groups: x[16] y[16] z[16]
+  const int* groups = nullptr;        ///< curve groups of each strand, which follow each other
+  const float* rest = nullptr;  ///< for each strand and monomial (f, sum f_s u_s) of its pieces that are not listed
+  int count = 0;
+  /// Strands that are not listed, for each monomial: weights w of axes v with sum w (v . u)^8 = sum f_i (u_i . u)^8 for
+  /// every u; then sum f_i, and over pairs, each counted twice, f_i f_j (u_i . u_j)^8 and f_i f_j.
+  const float* far = nullptr;
+  const float* axes = nullptr;    ///< x[48] y[48] z[48], the last three 0
+  float far_inverse2 = 0;         ///< 1 / d^2 of the nearest piece that is not listed
+  float far_bend[3] = {0, 0, 0};  ///< means over those strands: 1 / d^2, rho^2, rho n / d (kernels/strands.h)
+};
+
 /// One representation of the field in a block: f = sum w d^-m + polynomial, G = grad_S f likewise with w tau.
 struct FieldLevel {
   const float* sources = nullptr;        ///< curve groups, then point groups; 64-byte aligned
@@ -27,6 +45,9 @@ struct FieldLevel {
   float f_error = 0, g_error = 0;        ///< added to f and |G| wherever "outside" is to be proved
   float far_slope = 0, far_g_slope = 0;  ///< |derivative| of the far f and G along any line, at most
   float far_bend = 0, far_g_bend = 0;    ///< the same of |second derivative| / 2
+  // Where alpha varies one of these, or on a coarse level none: then any angle of the range may hold.
+  const FieldLevel* angle = nullptr;     ///< the field A of angle_field.h, with its f_error
+  const StrandLevel* strands = nullptr;  ///< the strands, whose near sources are those of the level, in their order
 };
 
 /// What the kernels read of a block. The coarse level finds where the surface can be; the fine level is the field that
@@ -41,6 +62,8 @@ struct BlockView {
   const void* owner = nullptr;
   int degree = 4;
   IsoCurve::View iso;
+  const IsoCurve::View* rows = nullptr;  ///< where alpha varies: tables for equal steps of its share
+  int row_count = 0;
 
   std::uint64_t surface(int octant) const { return find_surface(owner, octant); }
   const FieldLevel& coarse() const { return make_coarse(owner); }
@@ -65,11 +88,13 @@ struct Root {
 inline constexpr float shortest_gap = 2e-5F;
 
 struct PointField {
-  float f, gradient[3];  ///< of f
-  float si_gradient[3];  ///< G
-  float hessian[6];      ///< of the potential: derivative of G; xx yy zz xy xz yz
-  float nearest;         ///< distance to the nearest source
-  float second, third;   ///< M2 and m M3 of tracing.md 3.1, for bounds of f and G nearby
+  float f, gradient[3];            ///< of f
+  float si_gradient[3];            ///< G
+  float hessian[6];                ///< of the potential: derivative of G; xx yy zz xy xz yz
+  float nearest;                   ///< distance to the nearest source
+  float second, third;             ///< M2 and m M3 of tracing.md 3.1, for bounds of f and G nearby
+  float share, share_gradient[3];  ///< of the range of angles, where alpha varies; else 0
+  float share_bend;                ///< |share - its linear part| <= share_bend h^2 on short steps h
 };
 
 inline constexpr int far_moment_count = 80;  ///< see FarMoments
@@ -120,6 +145,39 @@ struct FarSums {
       potential[far_moment_count];  ///< in units of the cube, without the constants of FarMoments
 };
 
+inline constexpr int floats_per_strand_group = 7 * lanes;  ///< xyz, weight, direction xyz
+
+/// Where a quadratic is fitted in a cube: its centre, near its faces, near its corners.
+inline constexpr int strand_places = 15;
+inline constexpr float strand_place[strand_places][3] = {{0, 0, 0},
+                                                         {0.9F, 0, 0},
+                                                         {-0.9F, 0, 0},
+                                                         {0, 0.9F, 0},
+                                                         {0, -0.9F, 0},
+                                                         {0, 0, 0.9F},
+                                                         {0, 0, -0.9F},
+                                                         {0.8F, 0.8F, 0.8F},
+                                                         {-0.8F, 0.8F, 0.8F},
+                                                         {0.8F, -0.8F, 0.8F},
+                                                         {-0.8F, -0.8F, 0.8F},
+                                                         {0.8F, 0.8F, -0.8F},
+                                                         {-0.8F, 0.8F, -0.8F},
+                                                         {0.8F, -0.8F, -0.8F},
+                                                         {-0.8F, -0.8F, -0.8F}};
+
+/// One strand as a cube sees it; lengths in any one unit, places from any one origin.
+struct StrandQuery {
+  const float* groups;
+  int count, exponent;
+  const unsigned short* left_out;  ///< a bit for each lane of each group; null: none
+  float center[3], half;
+};
+struct StrandSamples {
+  float sums[strand_places][4];  ///< f and sum f_s u_s
+  float error;                   ///< sum f_s q^3, q the radius of the cube over the distance
+  float ratio;                   ///< the largest q
+};
+
 struct BlockKernels {
   struct Query {
     float t0, t1;
@@ -140,6 +198,9 @@ struct BlockKernels {
   void (*far_split)(const float* pieces, int groups, const FarQuery&, unsigned short* near, FarSums&);
   /// Of the eight octants, from groups of pieces: curves, then points.
   void (*octant_bounds)(const float* pieces, int curve_groups, int point_groups, int degree, OctantBounds*);
+  void (*strand_samples)(const StrandQuery&, StrandSamples&);
+  /// Adds a strand, (f, sum f_s u_s), to tensor_floats sums.
+  void (*add_strand)(const float sums[4], float* tensor);
 };
 
 /// The kernels of an instruction set ("sse4", "avx2", "avx512"), or of the best one here for "";

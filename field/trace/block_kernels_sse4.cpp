@@ -9,6 +9,7 @@ namespace {
 #include "field/trace/kernels/sums.h"
 #include "field/trace/kernels/far_on_ray.h"
 #include "field/trace/kernels/iso.h"
+#include "field/trace/kernels/strands.h"
 #include "field/trace/kernels/march.h"
 #include "field/trace/kernels/search.h"
 #include "field/trace/kernels/walk.h"
@@ -21,8 +22,8 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root,  point_field, walk,         cube_bounds,
-                                        far_moments, far_split,   octant_bounds};
+  static constexpr BlockKernels kernels{first_root, point_field,   walk,           cube_bounds, far_moments,
+                                        far_split,  octant_bounds, strand_samples, add_strand};
   return kernels;
 }
 

@@ -9,6 +9,7 @@ namespace marrow {
 struct BlockLevel {
   FieldLevel level;
   double f_error = 0, gradient_error = 0;
+  double angle_error = 0;  ///< of level.angle
 };
 
 }  // namespace marrow

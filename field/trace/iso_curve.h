@@ -1,66 +1,60 @@
-// The curve on which the corrected field is 1, as a table: the test "outside?" without evaluating the operator.
+// Where the corrected field is 1, in the plane of f and |grad_S f|, for one angle or for a range of them.
 //
-// In the plane of x = f and y = |grad_S f| the operator C is isotone in both for alpha >= 0 (tracing.md 3.3),
-// so {C < 1} is a region below one curve. It is stored in coordinates turned by theta = max(alpha, 0),
-//   u = y sin theta - x cos theta,   v = x sin theta + y cos theta,
-// because the operator projects along lines of constant v: C(x, y) < 1  <=>  v < V(u), with V nearly constant.
-// For alpha < 0 C is isotone in y and first falls, then rises in x; theta = 0 then gives V(-x) = Y(x), which
-// first rises, then falls, so that its minimum over an interval of x is at an end.
+// At a given f and |grad_S f| the operator is monotone in alpha (tracing.md 3.3): rising right of the reference curve,
+// falling left of it. So over a range of angles it is largest, and least, at the ends of the range.
 #pragma once
 
+#include <span>
 #include <vector>
+
+#include "field/trace/iso_table.h"
 
 namespace marrow {
 
-class Correction;
-
-/// The f with C(f, 0) = 1; infinite when there is none.
-double critical_field_of(const Correction&);
-
 class IsoCurve {
  public:
-  /// Needs a finite critical field.
-  explicit IsoCurve(const Correction&, double alpha);
+  using View = IsoTable::View;
+  using Slope = IsoTable::Slope;
 
-  /// Piecewise linear over u in [u_begin, u_begin + (size - 1) / inverse_step]; entries as float, sorted by u.
-  struct View {
-    const float* value;  ///< V, nearest
-    const float* lower;  ///< below V everywhere, between entries too
-    int size;
-    float u_begin, inverse_step;
-    float sin_theta, cos_theta;
-    bool two_sided;  ///< alpha < 0: "outside" must be tested at both ends of the interval of x
-    float peak_x;    ///< alpha < 0: where the curve over x is highest
-    float critical;  ///< critical_field_of() the correction, rounded up
-  };
-  View view() const;
+  /// For one angle.
+  IsoCurve(const Correction&, double alpha);
+  /// For all angles from `least` to `most`, 0 <= least < most, with the degree, cavity and projection of a correction:
+  /// tables for angles at equal distances, cubic between them. What that is off is found half way between tables, and
+  /// V_lower lies below V by twice as much.
+  IsoCurve(const Correction&, double least, double most);
 
-  /// Whether C < 1 for all 0 <= x in [x_low, x_high], 0 <= y <= y_high. Never wrongly true.
+  IsoCurve(IsoCurve&&) = default;  // views stay where they are
+
+  /// Whether C < 1 for all angles, 0 <= x in [x_low, x_high], 0 <= y <= y_high. Never wrongly true.
   bool outside(double x_low, double x_high, double y_high) const;
-  /// Whether C > 1 for all x >= x_low, y >= y_low (for alpha < 0 only known beyond the critical field). Never wrongly
-  /// true.
+  /// Whether C > 1 for all angles, x >= x_low, y >= y_low (for alpha < 0 only known
+  /// beyond the critical field). Never wrongly true.
   bool inside(double x_low, double y_low) const;
-  /// V_lower(u) - v: positive only where C < 1 for all smaller x, y (alpha >= 0), or at x, y itself.
-  double margin(double x, double y) const;
-  /// The direction in which C grows fastest at a point of the curve, times a positive number: C_x and C_y in
-  /// proportion, from the exact partials at the entries of the table.
-  struct Slope {
-    double x, y;
+  /// The f from which on C(f, G) >= 1 for all angles and G.
+  double critical_field() const { return rows_.front().critical_field(); }
+  bool two_sided() const { return rows_.front().two_sided(); }
+
+  /// V_lower(u) - v for the angle least + share (most - least); `share` in [0, 1].
+  double margin(double x, double y, double share = 0) const;
+  /// Where C grows fastest, as IsoTable::gradient(), and in which proportion it grows with the share.
+  struct Gradient {
+    double x, y, share;
   };
-  Slope gradient(double x, double y) const;
-  /// critical_field_of() of the correction.
-  double critical_field() const { return critical_; }
-  /// Whether C falls in x somewhere (alpha < 0).
-  bool two_sided() const { return two_sided_; }
+  Gradient gradient(double x, double y, double share = 0) const;
+
+  /// Of the only table, or the first.
+  View view() const { return views_.front(); }
+  /// Of all tables.
+  std::span<const View> views() const { return views_; }
+  double least() const { return least_; }
+  double most() const { return most_; }
 
  private:
-  double lower(double u) const;
-  double upper(double u) const;
+  struct Place;
 
-  double critical_;
-  double sin_ = 0, cos_ = 1, u_begin_ = 0, step_ = 1, peak_x_ = 0;
-  bool two_sided_;
-  std::vector<float> value_, lower_, upper_, slope_;
+  double least_, most_;
+  std::vector<IsoTable> rows_;
+  std::vector<View> views_;
 };
 
 }  // namespace marrow

@@ -35,7 +35,7 @@ void add_nodes(const Piece& piece, int count, const Vec3d& center, double half, 
   const double scale = 1 / half;
   if (piece.is_point()) {
     const double radius = piece.radius * scale;
-    out.add((piece.from - center) * scale, integer_power(radius, degree - 1), radius);
+    out.add((piece.from - center) * scale, integer_power(radius, degree - 1) * piece.factor, radius);
     return;
   }
   const GaussNodes rule = gauss_legendre(count);

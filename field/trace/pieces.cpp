@@ -62,7 +62,8 @@ Piece PieceCutter::segment_piece(const Vec3d& from, const Vec3d& to, double radi
 Piece PieceCutter::part(const Piece& piece, double begin, double end) const {
   const double slope = piece.radius_to - piece.radius_from;
   Piece p = segment_piece(lerp(piece.from, piece.to, begin), lerp(piece.from, piece.to, end),
-                          piece.radius_from + slope * begin, piece.radius_from + slope * end);
+                          piece.radius_from + slope * begin, piece.radius_from + slope * end)
+                .scaled(piece.factor);
   p.inside_distance = piece.inside_distance;
   p.primitive = piece.primitive;
   return p;

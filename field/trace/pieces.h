@@ -19,11 +19,20 @@ struct Piece {
   double length = 0;            ///< 0 for a point
   double mass = 0;              ///< f <= mass d^-exponent at distance d: L tau_max^(n-1) / N, or tau^(n-1) for a point
   double share = 0;             ///< mass / radius^exponent, the exponent being n - 1 for a point: L / (N radius), or 1
+  double factor = 1;            ///< its sources count this times; in mass and share already
   double radius = 0;            ///< the larger of the two
   double inside_distance = 0;   ///< every p nearer than this to the piece is inside, by its own field alone
   std::uint32_t primitive = 0;  ///< index into the blend's segments, or its points
 
   bool is_point() const { return length == 0; }
+  /// With sources that count `by` times.
+  Piece scaled(double by) const {
+    Piece p = *this;
+    p.factor *= by;
+    p.mass *= by;
+    p.share *= by;
+    return p;
+  }
   Vec3d middle() const { return (from + to) * 0.5; }
   Box3 box() const {
     Box3 b;

@@ -27,6 +27,10 @@ class SourceGroups {
     g.radius[lane] = static_cast<float>(radius);
     ++count_;
   }
+  /// What comes next begins a group.
+  void end_group() { count_ = group_count() * lanes; }
+  /// Lanes used, and left out by end_group().
+  int count() const { return count_; }
   int group_count() const { return static_cast<int>(groups_.size()); }
   const float* data() const { return groups_.empty() ? nullptr : groups_.front().x; }
 

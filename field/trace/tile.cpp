@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "field/trace/block.h"
+#include "field/trace/strands.h"
 
 namespace marrow {
 
@@ -46,6 +47,8 @@ std::size_t Tile::bytes() const {
     if (const Surroundings* s = lazy.peek()) sum += sizeof(Surroundings) + s->near.capacity() * sizeof(SourceRef);
   };
   add(fine_);
+  if (const StrandView* s = strands_.peek())
+    sum += sizeof(StrandView) + s->near.capacity() * sizeof(std::uint32_t) + s->far.capacity() * sizeof(float);
   for (const auto& octant : octants_) add(octant);
   return sum;
 }

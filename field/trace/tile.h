@@ -14,6 +14,7 @@
 namespace marrow {
 
 class Block;
+struct StrandView;
 
 /// Where a tile is and what it belongs to.
 struct TilePlace {
@@ -59,6 +60,8 @@ class Tile {
   const Surroundings& coarse() const { return coarse_; }
   const Lazy<Surroundings>& fine() const { return fine_; }
   const Lazy<Surroundings>& fine_of_octant(int octant) const { return octants_[static_cast<std::size_t>(octant)]; }
+  /// Made by Strands.
+  const Lazy<StrandView>& strands() const { return strands_; }
   /// Of a slot that has one.
   const Lazy<Block>& block(int slot) const { return blocks_[rank(content_.cells, slot)]; }
   const Lazy<Tile>& child(int slot) const { return children_[rank(content_.tiles, slot)]; }
@@ -77,6 +80,7 @@ class Tile {
   Surroundings coarse_;
   Lazy<Surroundings> fine_;
   std::array<Lazy<Surroundings>, 8> octants_;
+  Lazy<StrandView> strands_;
   std::unique_ptr<Lazy<Block>[]> blocks_;
   std::unique_ptr<Lazy<Tile>[]> children_;
 };

@@ -200,8 +200,7 @@ void describe(CLI::App& app, BenchCommand& c) {
       ->check(CLI::Range(0.0, 1.0))
       ->type_name("H");
   app.add_flag("!--no-processes", c.settings.processes, "Leaves out whole processes, and so POV-Ray");
-  app.add_flag("--long", c.settings.many_samples,
-               "Whole processes with --spp samples too, and alpha by direction: minutes");
+  app.add_flag("--long", c.settings.many_samples, "Whole processes with --spp samples too: minutes");
   app.add_option("--spp", c.settings.samples, "Samples of the long processes; default 16, POV-Ray's always 16")
       ->check(CLI::Range(2, 4096))
       ->type_name("N");

@@ -192,11 +192,6 @@ class Measurement {
     const auto plain = engine_of(*sum->surfaces);
     shaded_frame(*plain, workload_, frame_);
     for (const Rule& rule : rules) {
-      // An angle that varies is traced in general: minutes for a thousand segments.
-      if (rule.text[0] == '{' && !settings_.many_samples) {
-        out_.missing.push_back(fmt::format("alpha: {}: it takes minutes, ask with --long", rule.name));
-        continue;
-      }
       const auto ready = with(rule.text);
       if (!ready) continue;
       const auto engine = engine_of(*ready->surfaces);

@@ -23,7 +23,7 @@ struct BenchSettings {
   bool processes = true;       ///< whole processes too: this program, and POV-Ray where it is installed
   bool povray = true;
   bool rules = true;                ///< rules for `alpha` against the plain sum
-  bool many_samples = false;        ///< whole processes with `samples` samples too, and alpha by direction: minutes
+  bool many_samples = false;        ///< whole processes with `samples` samples too: minutes
   std::size_t largest_scaling = 0;  ///< strands of 10^3, 10^4, ... segments up to this many; 0: none
 };
 

@@ -145,7 +145,38 @@ TEST(Alpha, PerSkeletonCompilesWithContactForThoseWithout) {
   const BlendField& field = program->parts()[0].blend;
   EXPECT_EQ(field.points.alphas, std::vector<double>{0.3});
   EXPECT_EQ(field.segments.alphas, std::vector<double>(2, contact_alpha(4)));
-  EXPECT_NE(untraceable_part(field).find("per_skeleton"), std::string::npos);
+  EXPECT_TRUE(untraceable_part(field).empty());
+}
+
+TEST(Alpha, IsASingleOneWhereTheRuleGivesNoOther) {
+  BlendField blend;
+  blend.alpha = 0.7;
+  EXPECT_EQ(single_angle(blend), 0.7);
+  for (const double x : {0.0, 1.0, 2.5}) blend.points.add({{x, 0, 0}, 0.6}, {});
+  blend.points.strands = {0, 1, 2};
+  blend.direction_bounds = {{0.3, 1.5}, {0.3, 1.5}, {0.3, 1.5}};
+  EXPECT_EQ(single_angle(blend), 0.3);
+  EXPECT_NEAR(alpha_at(blend, {0.4, 1.2, -0.3}).value, 0.3, 1e-15);
+  blend.segments.add({{0, 0, 0}, {1, 0, 0}, 0.2, 0.2}, {});
+  blend.segments.strands = {3};
+  blend.direction_bounds.push_back({0.3, 1.5});
+  EXPECT_FALSE(single_angle(blend));
+  EXPECT_TRUE(untraceable_part(blend).empty());
+  blend.direction_bounds[1].most = 1.4;
+  EXPECT_FALSE(untraceable_part(blend).empty());
+  blend.segments = {};
+  blend.direction_bounds.pop_back();
+  EXPECT_FALSE(single_angle(blend));
+  blend.direction_bounds.clear();
+  blend.alpha_per_skeleton = true;
+  blend.points.alphas = {0.9, 0.9, 0.9};
+  EXPECT_EQ(single_angle(blend), 0.9);
+  EXPECT_NEAR(alpha_at(blend, {0.4, 1.2, -0.3}).value, 0.9, 1e-15);
+  blend.points.alphas[2] = 0.8;
+  EXPECT_FALSE(single_angle(blend));
+  EXPECT_TRUE(untraceable_part(blend).empty());
+  blend.points.alphas[2] = -0.1;
+  EXPECT_FALSE(untraceable_part(blend).empty());
 }
 
 TEST(Alpha, RefusesAnglesOfSkeletonsThatAreOutOfRange) {

@@ -138,9 +138,19 @@ Draft far_away(Random& random) {
   return d;
 }
 
+Setting varied_setting(Random& random) {
+  return {random.whole(3, 6), 1, true, random.between(0, 1) < 0.5 ? Projection::Paper : Projection::Exact};
+}
+
+// An angle for each skeleton.
+Draft angles(Random& random) { return {random_angled_scene(random, varied_setting(random), random.whole(2, 9))}; }
+
+// An angle by the directions of strands.
+Draft strands(Random& random) { return {random_stranded_scene(random, varied_setting(random), random.whole(2, 16))}; }
+
 using Draw = Draft (*)(Random&);
-constexpr std::array<Draw, kind_names.size()> draws{skeletons, thin_feature, nearly_touching, ring,
-                                                    loop,      degenerate,   ratios,          far_away};
+constexpr std::array<Draw, kind_names.size()> draws{skeletons,  thin_feature, nearly_touching, ring,   loop,
+                                                    degenerate, ratios,       far_away,        angles, strands};
 
 void scale(BlendField& blend, double by, const Vec3d& move) {
   for (auto& s : blend.points.skeletons) s = {s.at * by + move, s.radius * by};

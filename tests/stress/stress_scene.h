@@ -12,8 +12,8 @@
 
 namespace marrow::test {
 
-inline constexpr std::array kind_names{"skeletons", "thin feature", "nearly touching", "ring",
-                                       "loop",      "degenerate",   "ratios",          "far away"};
+inline constexpr std::array kind_names{"skeletons",  "thin feature", "nearly touching", "ring",   "loop",
+                                       "degenerate", "ratios",       "far away",        "angles", "strands"};
 
 /// One blend, the surfaces that are tested, and the oracle that judges them.
 class StressScene {

@@ -171,5 +171,37 @@ TEST(FirstRoot, KeepsToTheInterval) {
   EXPECT_GT(hits, 100);
 }
 
+TEST(FirstRoot, AgreesWithTheOracleWhereEachSkeletonHasItsAngle) {
+  Random random(75);
+  Tally all;
+  for (const int n : {3, 4, 5})
+    for (const Projection projection : {Projection::Paper, Projection::Exact})
+      for (const int count : {2, 9}) {
+        const Setting s{n, 0, true, projection};
+        Judge judge(random_angled_scene(random, s, count));
+        for (int i = 0; i < 30; ++i) judge.check(any_ray(random, judge.field()));
+        expect_clean(judge, s);
+        all.add(judge.tally);
+      }
+  all.print("an angle for each skeleton");
+  EXPECT_GT(all.hits, 100);
+}
+
+TEST(FirstRoot, AgreesWithTheOracleWhereDirectionsGiveTheAngle) {
+  Random random(76);
+  Tally all;
+  for (const int n : {3, 4, 5})
+    for (const Projection projection : {Projection::Paper, Projection::Exact})
+      for (const int count : {2, 12}) {
+        const Setting s{n, 1, true, projection};
+        Judge judge(random_stranded_scene(random, s, count));
+        for (int i = 0; i < 30; ++i) judge.check(any_ray(random, judge.field()));
+        expect_clean(judge, s);
+        all.add(judge.tally);
+      }
+  all.print("directions of strands");
+  EXPECT_GT(all.hits, 100);
+}
+
 }  // namespace
 }  // namespace marrow::test

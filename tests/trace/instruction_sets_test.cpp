@@ -40,14 +40,20 @@ TEST(InstructionSets, UnknownOnesAreRefused) {
   EXPECT_FALSE(BlendTracer::make(BlendField{}, {.instruction_set = "mmx"}));
 }
 
+// Stand for one of its own for each skeleton, and for one by directions.
+constexpr double angle_each = 0.125, by_direction = 0.25;
+
 TEST(InstructionSets, GiveTheSameBits) {
   ASSERT_GE(sets_here().size(), 2U) << "nothing to compare on this machine";
   const auto variants = variants_here();
   Random random(91);
   int rays = 0, hits = 0;
-  const Setting settings[] = {{3, 1.0}, {4, contact_alpha(4)}, {4, -0.4}, {5, 0}, {7, 1.2}};
+  const Setting settings[] = {{3, 1.0}, {4, contact_alpha(4)}, {4, -0.4},        {5, 0},
+                              {7, 1.2}, {4, angle_each},       {4, by_direction}};
   for (const Setting& s : settings) {
-    const BlendField blend = random_scene(random, s, 4);
+    const BlendField blend = s.alpha == angle_each     ? random_angled_scene(random, s, 4)
+                             : s.alpha == by_direction ? random_stranded_scene(random, s, 5)
+                                                       : random_scene(random, s, 4);
     std::vector<AllCells> tracers;
     for (const Variant& v : variants) tracers.emplace_back(blend, v.options);
     const BlendTracer& first = tracers.front().tracer();

@@ -30,9 +30,48 @@ struct Oracle::Local {
   Vec3d g, bend;    // grad_S f and its derivative along the ray
   double n_k;       // at least n K
   double distance;
+  double alpha;
 };
 
-Oracle::Oracle(const BlendField& blend) : blend_(blend), correction_(correction_of(blend)) {}
+namespace {
+
+// Whatever the weights of its segments: all lie within some angle of the strand's axis.
+double least_mean_direction(const BlendField& blend) {
+  double least = 1;
+  const auto& strands = blend.segments.strands;
+  const auto direction = [&](std::size_t i) {
+    const SegmentSkeleton& s = blend.segments.skeletons[i];
+    return normalize(s.to - s.from).vec();
+  };
+  for (std::size_t first = 0, end = 0; first < strands.size(); first = end) {
+    Vec3d sum;
+    for (end = first; end < strands.size() && strands[end] == strands[first]; ++end) sum += direction(end);
+    for (std::size_t i = first; i < end; ++i) least = std::min(least, dot(normalize(sum).vec(), direction(i)));
+  }
+  return std::max(least, 0.01);
+}
+
+}  // namespace
+
+Oracle::Oracle(const BlendField& blend) : blend_(blend), correction_(correction_of(blend)) {
+  if (!blend.alpha_varies()) return;
+  least_ = 2;
+  most_ = -2;
+  const auto include = [&](double alpha) {
+    least_ = std::min(least_, alpha);
+    most_ = std::max(most_, alpha);
+  };
+  blend.for_each_list([&](const auto& list) { std::ranges::for_each(list.alphas, include); });
+  for (const DirectionBounds& b : blend.direction_bounds) {
+    include(b.least);
+    include(b.most);
+  }
+  if (!blend.direction_bounds.empty()) steepness_ = 2 + 32 / least_mean_direction(blend);
+}
+
+Correction Oracle::correction_with(double alpha) const {
+  return Correction(blend_.degree, alpha, blend_.cavity, blend_.projection);
+}
 
 double Oracle::value(const Vec3d& p) const { return corrected_value(blend_, p); }
 
@@ -57,7 +96,8 @@ Oracle::Local Oracle::local(const Vec3d& p, const Vec3d& direction) const {
           s.si_gradient,
           s.si_jacobian.times(direction),
           trace / (blend_.degree - 2) * (1 + 1e-10),
-          skeleton_distance(p) * (1 - 1e-12)};
+          skeleton_distance(p) * (1 - 1e-12),
+          alpha_at(blend_, p).value};
 }
 
 // Both bounds are convex in the step, so its ends suffice.
@@ -68,6 +108,13 @@ bool Oracle::outside(const Local& l, double step) const {
   const double high = std::max(l.f, end + bend), low = std::max(0.0, std::min(l.f, end - bend));
   const double g_end = length(l.g + l.bend * step) + l.n_k * l.distance * remainder(blend_.degree + 1, q);
   const double g = std::max(length(l.g), g_end);
+  if (blend_.alpha_varies()) {
+    // Means whose weights have logarithms no steeper than n / distance move by the range times that at most; products
+    // of two weights by twice that, and the mean direction v of a strand, whose eighth power counts, by 2 / |v|.
+    const double turn = steepness_ * (most_ - least_) * blend_.degree * step / (l.distance - step);
+    return correction_with(std::max(least_, l.alpha - turn)).value(high, g) < 1 &&
+           correction_with(std::min(most_, l.alpha + turn)).value(high, g) < 1;
+  }
   return correction_.value(high, g) < 1 && (blend_.alpha >= 0 || correction_.value(low, g) < 1);
 }
 

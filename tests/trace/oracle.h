@@ -35,8 +35,11 @@ class Oracle {
   bool outside(const Local&, double step) const;
   double certified_step(const Local&, double limit, double& share) const;
 
+  Correction correction_with(double alpha) const;
+
   const BlendField& blend_;
   Correction correction_;
+  double least_ = 0, most_ = 0, steepness_ = 1;  // of angles, where they vary
 };
 
 }  // namespace marrow::test

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <iomanip>
 #include <numbers>
 #include <sstream>
@@ -62,6 +63,48 @@ inline BlendField random_scene(Random& random, const Setting& setting, int count
     }
     s.radius_to = random.between(0, 1) < 0.4 ? s.radius_from : random.between(0.1, 0.4);
     blend.segments.add(s, {});
+  }
+  return blend;
+}
+
+/// The same with an angle for each skeleton, one in three the sum.
+inline BlendField random_angled_scene(Random& random, const Setting& setting, int count) {
+  BlendField blend = random_scene(random, setting, count);
+  blend.alpha_per_skeleton = true;
+  const auto turn = [&](auto& list) {
+    for (std::size_t i = 0; i < list.size(); ++i)
+      list.alphas.push_back(random.between(0, 1) < 0.3 ? std::numbers::pi / 2 : random.between(0, 1.5));
+  };
+  turn(blend.points);
+  turn(blend.segments);
+  return blend;
+}
+
+/// `count` strands, and a third as many points, whose directions give the angle: up to four segments that turn by
+/// half a radian, of radii from 0.1 to 0.3.
+inline BlendField random_stranded_scene(Random& random, const Setting& setting, int count) {
+  BlendField blend = random_scene(random, setting, 0);
+  const DirectionBounds bounds{random.between(0, 0.9), random.between(1, std::numbers::pi / 2)};
+  for (int k = 0; k < count; ++k) {
+    const auto strand = static_cast<std::uint32_t>(blend.direction_bounds.size());
+    blend.direction_bounds.push_back(bounds);
+    if (k % 4 == 3) {
+      blend.points.add({random.vector(1.5), random.between(0.15, 0.5)}, {});
+      blend.points.strands.push_back(strand);
+      continue;
+    }
+    SegmentSkeleton s{.from = random.vector(1.2), .to = {}};
+    Vec3d along = random_direction(random);
+    s.radius_from = random.between(0.1, 0.3);
+    for (int i = 0; i < 1 + k % 4; ++i) {
+      s.to = s.from + along * random.between(0.3, 0.9);
+      s.radius_to = random.between(0.1, 0.3);
+      blend.segments.add(s, {});
+      blend.segments.strands.push_back(strand);
+      s.from = s.to;
+      s.radius_from = s.radius_to;
+      along = normalize(along + random_direction(random) * 0.5).vec();
+    }
   }
   return blend;
 }

@@ -80,3 +80,78 @@ inline V16 margin_at(const IsoCurve::View& iso, V16 x, V16 y) {
 inline V16 nominal_at(const IsoCurve::View& iso, V16 x, V16 y) {
   return CurvePlace(iso, turned_u(iso, x, y)).between(iso.value) - turned_v(iso, x, y);
 }
+
+// Tables for several angles: all that they give is cubic in the share of the range, through the four tables around it.
+struct IsoRows {
+  const IsoCurve::View* first;
+  float weight[4], slope[4];  // of the tables, and their derivatives by the share
+
+  IsoRows(const BlockView& block, float share) {
+    const float steps = static_cast<float>(block.row_count - 1), at = min_of(1, max_of(0, share)) * steps;
+    int k = static_cast<int>(at) - 1;
+    if (k > block.row_count - 4) k = block.row_count - 4;
+    if (k < 0) k = 0;
+    first = block.rows + k;
+    // Lagrange's polynomials for nodes at 0, 1, 2, 3
+    const float a = at - static_cast<float>(k), b = a - 1, c = a - 2, d = a - 3;
+    const float w[4] = {b * c * d * (-1.0F / 6), a * c * d * 0.5F, a * b * d * -0.5F, a * b * c * (1.0F / 6)};
+    const float s[4] = {(c * d + b * d + b * c) * (-1.0F / 6), (c * d + a * d + a * c) * 0.5F,
+                        (b * d + a * d + a * b) * -0.5F, (b * c + a * c + a * b) * (1.0F / 6)};
+    for (int i = 0; i < 4; ++i) {
+      weight[i] = w[i];
+      slope[i] = s[i] * steps;
+    }
+  }
+};
+
+inline float margin_at(const BlockView& block, float x, float y, float share) {
+  const IsoRows rows(block, share);
+  float margin = 0;
+  for (int i = 0; i < 4; ++i) {
+    const IsoCurve::View& iso = rows.first[i];
+    const float u = turned_u(iso, x, y), lower = lower_curve_at(iso, u);
+    if (!(lower > -infinity)) return -infinity;
+    const float value = curve_at(iso, u).value;
+    margin += rows.weight[i] * (value - turned_v(iso, x, y)) - abs_of(rows.weight[i]) * (value - lower);
+  }
+  return margin;
+}
+
+inline float nominal_margin_at(const BlockView& block, float x, float y, float share) {
+  const IsoRows rows(block, share);
+  float margin = 0;
+  for (int i = 0; i < 4; ++i) {
+    const float at_row = nominal_margin_at(rows.first[i], x, y);
+    if (!(at_row > -infinity)) return -infinity;
+    margin += rows.weight[i] * at_row;
+  }
+  return margin;
+}
+
+inline bool nominally_inside(const BlockView& block, float x, float y, float share) {
+  if (x > block.iso.critical) return true;  // the first table is that of the least angle, which has the largest one
+  const float margin = nominal_margin_at(block, x, y, share);
+  return margin < 0 && margin > -infinity;
+}
+
+// At x and y, with derivatives along a ray. `share_slope` is that of the share.
+struct IsoValue {
+  float curve = 0, v = 0, slope = 0, v_slope = 0, x_weight = 0, y_weight = 0;
+  float share_weight = 0;  // derivative of the residual by the share
+
+  IsoValue(const BlockView& block, float share, float share_slope, float x, float y, float dx, float dy) {
+    const IsoRows rows(block, share);
+    for (int i = 0; i < 4; ++i) {
+      const IsoCurve::View& iso = rows.first[i];
+      const CurveValue value = curve_at(iso, turned_u(iso, x, y));
+      const float w = rows.weight[i], ws = rows.slope[i] * share_slope, here = turned_v(iso, x, y);
+      curve += w * value.value;
+      v += w * here;
+      x_weight += w * (iso.sin_theta + value.slope * iso.cos_theta);
+      y_weight += w * (iso.cos_theta - value.slope * iso.sin_theta);
+      share_weight += rows.slope[i] * (value.value - here);
+      v_slope += w * turned_v(iso, dx, dy) + ws * here;
+    }
+    slope = share_weight * share_slope - x_weight * dx - y_weight * dy;
+  }
+};

@@ -22,6 +22,27 @@ inline void far_derivatives(const FieldLevel& level, const float p[3], V4 (&d)[3
       }
 }
 
+// A / f of angle_field.h, as in march.h.
+inline void find_mean_share(const FieldLevel& angle, int degree, const float p[3], PointField& out) {
+  FullSums s{};
+  V16 nearest{};
+  for_each_list(angle, degree, FullSummer{p, nearest, s});
+  V4 d[3] = {};
+  far_derivatives(angle, p, d);
+  const float inverse = 1 / max_of(out.f, 1e-20F), n = static_cast<float>(degree);
+  out.share = (s.f + far_at(angle, p[0], p[1], p[2])[0]) * inverse;
+  for (int i = 0; i < 3; ++i) out.share_gradient[i] = (s.df[i] + d[i][0] - out.share * out.gradient[i]) * inverse;
+  out.share_bend = n * (n + 1) * (s.second + out.share * out.second) * inverse;
+}
+
+inline void find_strand_share(const FieldLevel& level, int degree, const float p[3], PointField& out) {
+  constexpr float axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const ShareValue<3> value = strand_share(level, degree, p, axes);
+  out.share = value.share;
+  for (int i = 0; i < 3; ++i) out.share_gradient[i] = value.slope[i];
+  out.share_bend = value.bend;
+}
+
 PointField point_field(const FieldLevel& level, int degree, const float p[3]) {
   FullSums s{};
   V16 nearest{};
@@ -42,5 +63,9 @@ PointField point_field(const FieldLevel& level, int degree, const float p[3]) {
   out.hessian[3] = s.h[3] + d[0][2];
   out.hessian[4] = s.h[4] + d[0][3];
   out.hessian[5] = s.h[5] + d[1][3];
+  out.share = out.share_bend = 0;
+  for (float& g : out.share_gradient) g = 0;
+  if (level.angle != nullptr) find_mean_share(*level.angle, degree, p, out);
+  if (level.strands != nullptr) find_strand_share(level, degree, p, out);
   return out;
 }

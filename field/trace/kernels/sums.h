@@ -96,6 +96,29 @@ inline void add_full_sums(const float* group, int groups, int exponent, const fl
   }
 }
 
+// The field A of angle_field.h, its derivative along the ray, and its M2.
+struct AngleSums {
+  float value, slope, second;
+};
+
+template <int Exponent>
+inline void add_angle_sums(const float* group, int groups, int exponent, const Probe& probe, AngleSums& out) {
+  V16 a[12] = {};
+  for (int k = 0; k < groups; ++k, group += floats_per_group) {
+    const V16 dx = probe.px - load(group), dy = probe.py - load(group + 16), dz = probe.pz - load(group + 32);
+    const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz);
+    const V16 w0 = load(group + 48) * inverse_power<Exponent>(inv, exponent), w2 = w0 * inv;
+    a[0] += w0;
+    a[1] += w2 * (dx * probe.ex + dy * probe.ey + dz * probe.ez);
+    a[2] += w2;
+  }
+  float s[16];
+  sum_lanes(a, s);
+  out.value += s[0];
+  out.slope -= static_cast<float>(Exponent > 0 ? Exponent : exponent) * s[1];
+  out.second += s[2];
+}
+
 inline const float* point_sources(const FieldLevel& l) {
   return l.sources + static_cast<long>(l.curve_groups) * floats_per_group;
 }
@@ -138,6 +161,15 @@ struct RaySummer {
   template <int Exponent>
   void add(const float* group, int groups, int exponent) const {
     add_sums<Exponent>(group, groups, exponent, probe, nearest, out);
+  }
+};
+
+struct AngleSummer {
+  const Probe& probe;
+  AngleSums& out;
+  template <int Exponent>
+  void add(const float* group, int groups, int exponent) const {
+    add_angle_sums<Exponent>(group, groups, exponent, probe, out);
   }
 };
 

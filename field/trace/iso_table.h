@@ -1,0 +1,76 @@
+// The curve on which the corrected field of one angle is 1, as a table: "outside?" without evaluating the operator.
+//
+// In the plane of x = f and y = |grad_S f| the operator C is isotone in both for alpha >= 0 (tracing.md 3.3),
+// so {C < 1} is a region below one curve. It is stored in coordinates turned by theta = max(alpha, 0),
+//   u = y sin theta - x cos theta,   v = x sin theta + y cos theta,
+// because the operator projects along lines of constant v: C(x, y) < 1  <=>  v < V(u), with V nearly constant.
+// For alpha < 0 C is isotone in y and first falls, then rises in x; theta = 0 then gives V(-x) = Y(x), which
+// first rises, then falls, so that its minimum over an interval of x is at an end.
+#pragma once
+
+#include <vector>
+
+namespace marrow {
+
+class Correction;
+
+/// The f with C(f, 0) = 1; infinite when there is none.
+double critical_field_of(const Correction&);
+
+class IsoTable {
+ public:
+  /// Needs a finite critical field.
+  IsoTable(const Correction&, double alpha, int entry_count = 2048);
+
+  /// Piecewise linear over u in [u_begin, u_begin + (size - 1) / inverse_step]; entries as float, sorted by u.
+  struct View {
+    const float* value;  ///< V, nearest
+    const float* lower;  ///< below V everywhere, between entries too
+    int size;
+    float u_begin, inverse_step;
+    float sin_theta, cos_theta;
+    bool two_sided;  ///< alpha < 0: "outside" must be tested at both ends of the interval of x
+    float peak_x;    ///< alpha < 0: where the curve over x is highest
+    float critical;  ///< critical_field_of() the correction, rounded up
+  };
+  View view() const;
+
+  /// Whether C < 1 for all 0 <= x in [x_low, x_high], 0 <= y <= y_high. Never wrongly true.
+  bool outside(double x_low, double x_high, double y_high) const;
+  /// Whether C > 1 for all x >= x_low, y >= y_low (for alpha < 0 only known beyond the critical field). Never wrongly
+  /// true.
+  bool inside(double x_low, double y_low) const;
+  /// V_lower(u) - v: positive only where C < 1 for all smaller x, y (alpha >= 0), or at x, y itself.
+  double margin(double x, double y) const;
+  /// The same by V itself: 0 on the curve.
+  double nominal(double x, double y) const;
+  /// The direction in which C grows fastest at a point of the curve, times a positive number: C_x and C_y in
+  /// proportion, from the exact partials at the entries of the table.
+  struct Slope {
+    double x, y;
+  };
+  Slope gradient(double x, double y) const;
+  struct Point {
+    double x, y;
+  };
+  /// On the curve, at an entry of the table.
+  Point point(int entry) const;
+  int size() const { return static_cast<int>(value_.size()); }
+  /// Moves V_lower to at least `by` below V around a point.
+  void lower_around(const Point&, double by);
+  /// critical_field_of() of the correction.
+  double critical_field() const { return critical_; }
+  /// Whether C falls in x somewhere (alpha < 0).
+  bool two_sided() const { return two_sided_; }
+
+ private:
+  double lower(double u) const;
+  double upper(double u) const;
+
+  double critical_;
+  double sin_ = 0, cos_ = 1, u_begin_ = 0, step_ = 1, peak_x_ = 0;
+  bool two_sided_;
+  std::vector<float> value_, lower_, upper_, slope_;
+};
+
+}  // namespace marrow
