@@ -149,7 +149,7 @@ using Alpha = std::variant<AlphaContact, AlphaSum, double, AlphaPerSkeleton, Alp
 enum class Projection { Paper, Exact };
 
 /// n-ary blend with topology control (Zanni, Cani, Gleicher 2015); iso-value 1.
-/// Children: primitives, or transforms (similarities) of primitives.
+/// Children: primitives, groups, or transforms (similarities) of them.
 struct Blend {
   Kernel kernel;
   Alpha alpha = AlphaContact{};
@@ -161,6 +161,7 @@ struct Blend {
 /// Crisp union: the largest child value. Children need not be blends.
 struct Union {
   std::vector<FieldNodeId> of;
+  bool is_group = false;  ///< a union but in a blend, which takes its children as its own
 };
 struct Transform {
   Affine parent_from_child;

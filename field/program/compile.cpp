@@ -259,7 +259,10 @@ class Compiler {
                                      "or put the transform above the blend");
                      open.push_back({t.of, child.from_node * t.parent_from_child});
                    },
-                   [&](const Union&) { report_nesting(child.node, "union"); },
+                   [&](const Union& u) {
+                     if (u.is_group) push_children(u.of, child.from_node, open);
+                     else report_nesting(child.node, "union");
+                   },
                    [&](const Blend&) { report_nesting(child.node, "blend"); },
                    [&](const GeneralNode& n) { report_nesting(child.node, std::string(info_of(n.node->node).name)); }},
         description_[child.node].what);
@@ -267,7 +270,8 @@ class Compiler {
 
   void report_nesting(FieldNodeId node, const std::string& kind) {
     report(node, "a " + kind + " inside a blend is not supported",
-           "a blend takes skeletons (point, segment, polyline, skeleton), or transforms of them");
+           "a blend takes skeletons (point, segment, polyline, curve, triangle, circle, arc, skeleton), transforms and "
+           "groups of them; `sum`, `ricci` or `soft_union` blend whole fields");
   }
 
   void add_primitive(const Primitive& primitive, const Placement& child, const Blend& blend, SkeletonModel model,

@@ -49,7 +49,7 @@ class FieldProgram {
 
 /// Flattens a description: transforms distribute over unions and compose. All errors, not the first:
 /// radii <= 0, degrees and angles out of range, singular transforms, transforms inside a blend that are not
-/// similarities, unions and blends inside a blend (not supported). 10^6 nodes take a fraction of a second.
+/// similarities, fields that are no skeletons inside a blend. 10^6 nodes take a fraction of a second.
 Result<FieldProgram> compile(const FieldDescription&);
 
 struct FieldSample {

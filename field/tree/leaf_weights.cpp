@@ -1,5 +1,6 @@
 // Who contributes how much to the value of a tree at a point.   [physics 2.3]
 #include <algorithm>
+#include <optional>
 
 #include "field/tree/machine.h"
 
@@ -16,10 +17,22 @@ struct Visit {
 
 constexpr std::size_t nothing = ~std::size_t{0};
 
-std::vector<double> largest_alone(std::span<const double> f) {
-  std::vector<double> share(f.size(), 0);
-  share[static_cast<std::size_t>(std::max_element(f.begin(), f.end()) - f.begin())] = 1;
+std::vector<double> one_alone(std::size_t one, std::size_t count) {
+  std::vector<double> share(count, 0);
+  share[one] = 1;
   return share;
+}
+std::vector<double> largest_alone(std::span<const double> f) {
+  return one_alone(static_cast<std::size_t>(std::max_element(f.begin(), f.end()) - f.begin()), f.size());
+}
+
+std::optional<std::size_t> owner_of(const TreeNode& node, std::span<const double> f) {
+  return std::visit(
+      [&](const auto& kind) -> std::optional<std::size_t> {
+        if constexpr (requires { kind.owner(f); }) return kind.owner(f);
+        else return {};
+      },
+      static_cast<const TreeNode::Kinds&>(node));
 }
 
 // On a plateau, or inside a skeleton: the largest operand alone.
@@ -35,6 +48,7 @@ std::vector<double> normalised(std::vector<double> share, std::span<const double
 std::vector<double> shares(const TreeNode& node, std::span<const double> f) {
   if (std::holds_alternative<CrispUnion>(node)) return largest_alone(f);
   if (std::holds_alternative<Sum>(node)) return normalised({f.begin(), f.end()}, f);
+  if (const auto owner = owner_of(node, f); owner && f[*owner] > 0) return one_alone(*owner, f.size());
   std::vector<Jet<double, 1>> operands(f.begin(), f.end());
   std::vector<double> share(f.size(), 0);
   for (std::size_t i = 0; i < f.size(); ++i) {

@@ -15,6 +15,8 @@
 //   static constexpr bool ignores_zeros                of an operator: a child with the value 0 may be left out
 //   double child_level(double level, std::size_t n)    of an operator of n children: while all their values are below
 //                                                      this, its own is below `level`; `level` when left out
+//   std::size_t owner(std::span<const double> f) const of an operator that does not mix its children: the one whose
+//                                                      material the value has; by contribution when left out
 //   std::string problem(std::size_t children) const    what is wrong with its parameters together; empty: nothing
 #pragma once
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "field/kernel/inverse_family.h"
 #include "renderer/scene/alpha_forms.h"
@@ -88,6 +89,18 @@ const Table<Union>& union_table() {
   return table;
 }
 
+struct Group {
+  std::vector<FieldNodeId> of;
+};
+const Table<Group>& group_table() {
+  static const Table<Group> table(
+      "group",
+      "Nodes under one name. A blend takes its skeletons as if they were listed there; elsewhere it is a union.",
+      {key<Group>("of", &Group::of, list_of(field_node(), 1), "the nodes").required()});
+  return table;
+}
+Union union_of(Group group) { return {.of = std::move(group.of), .is_group = true}; }
+
 struct Rotation {
   Vec3d axis{0, 1, 0};
   double angle_deg = 0;
@@ -161,7 +174,8 @@ const Alternatives<FieldNodeId>& field_nodes() {
                                                                {"arc", added(arc_form(), as_it_is)},
                                                                {"skeleton", added(skeleton_form(), as_it_is)},
                                                                {"blend", added(map_of(blend_table()), as_it_is)},
-                                                               {"union", added(map_of(union_table()), as_it_is)}};
+                                                               {"union", added(map_of(union_table()), as_it_is)},
+                                                               {"group", added(map_of(group_table()), union_of)}};
     for (auto& form : general_node_forms()) all.push_back(std::move(form));
     all.emplace_back("transform", added(map_of(transform_table()), transform_of));
     all.emplace_back("use", use());
@@ -202,7 +216,7 @@ Form<FieldDescription> field_tree() {
 std::vector<const TableInfo*> field_tables() {
   std::vector<const TableInfo*> tables = primitive_tables();
   for (const auto& more : {curve_tables(), skeleton_tables()}) tables.insert(tables.end(), more.begin(), more.end());
-  for (const TableInfo* table : {&kernel_table().info, &blend_table().info, &union_table().info,
+  for (const TableInfo* table : {&kernel_table().info, &blend_table().info, &union_table().info, &group_table().info,
                                  &transform_table().info, &rotation_table().info})
     tables.push_back(table);
   for (const TableInfo* table : general_node_tables()) tables.push_back(table);

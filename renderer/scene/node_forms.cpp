@@ -28,7 +28,11 @@ Form<double> form_of(const form::Real& r) { return number({.min = r.min, .max = 
 Form<int> form_of(const form::Whole& w) { return integer(w.min, w.max); }
 Form<bool> form_of(const form::Switch&) { return boolean(); }
 Form<Vec3d> form_of(const form::Position&) { return position(); }
-Form<UnitVec3> form_of(const form::Direction&) { return mapped<UnitVec3>(direction(), normalize); }
+Form<UnitVec3> form_of(const form::Direction&) {
+  Form<UnitVec3> form = mapped<UnitVec3>(direction(), normalize);
+  form.show = [show = direction().show](const UnitVec3& d) { return show(d.vec()); };
+  return form;
+}
 Form<Vec3d> form_of(const form::Sizes&) {
   return checked(
       position(), [](const Vec3d& s) { return s.x > 0 && s.y > 0 && s.z > 0; }, "three lengths above 0");
@@ -36,13 +40,21 @@ Form<Vec3d> form_of(const form::Sizes&) {
 Form<std::vector<Vec3d>> form_of(const form::Points& p) { return list_of(position(), p.min_count); }
 Form<std::vector<double>> form_of(const form::Reals& r) {
   const Form<double> one = number({.min = r.min, .max = r.max, .min_open = r.min_open});
-  return either<std::vector<double>>(
+  Form<std::vector<double>> form = either<std::vector<double>>(
       {mapped<std::vector<double>>(one, [](double x) { return std::vector{x}; }), list_of(one, 1)});
+  form.show = [show = one.show](const std::vector<double>& all) {
+    std::string text;
+    for (const double x : all) text += (text.empty() ? "" : ", ") + show(x);
+    return all.size() == 1 ? text : "[" + text + "]";
+  };
+  return form;
 }
 Form<std::vector<std::vector<double>>> form_of(const form::Rows& r) {
   return list_of(list_of(number(between(r.min, r.max)), 1), 1);
 }
 
+// What is drawn is never meant when points are left out.
+constexpr bool is_required(const form::Points&) { return true; }
 template <class Form>
 constexpr bool is_required(const Form& form) {
   if constexpr (requires { form.required; }) return form.required;
@@ -69,7 +81,10 @@ class KeysOf {
   }
   static Key<Owner> make(const char* name, double Kind::*member, const form::Angle& a, const char* doc) {
     const auto set = [member](Owner& owner, double degrees) { owner.*member = degrees * degree_in_radians; };
-    return key<Owner>(name, set, degrees(between(a.min_deg, a.max_deg)), doc);
+    const Form<double> form = degrees(between(a.min_deg, a.max_deg));
+    Key<Owner> made = key<Owner>(name, set, form, doc);
+    if (form.show) made.info.fallback = form.show(Owner{}.*member / degree_in_radians);
+    return made;
   }
   template <class Enum>
   static Key<Owner> make(const char* name, Enum Kind::*member, const form::Word&, const char* doc) {
@@ -151,7 +166,9 @@ Form<Choice> form_of_choice() {
       if (v.text == name) return value;
     return reader.unknown("value of " + reader.subject, v.text, v.place, names);
   };
-  return either<Choice>({one_of(alternatives_of<Choice>()), word});
+  Form<Choice> form = either<Choice>({one_of(alternatives_of<Choice>()), word});
+  form.show = [names](const Choice& choice) { return names[choice.index()]; };
+  return form;
 }
 
 // Objects have a `plane` too, and each table has a name of its own.

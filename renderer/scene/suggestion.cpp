@@ -36,7 +36,7 @@ std::string suggest(std::string_view word, const std::vector<std::string>& candi
   constexpr std::size_t most = 24;
   std::string list;
   for (std::size_t i = 0; i < std::min(most, candidates.size()); ++i) list += (i ? ", " : "") + candidates[i];
-  if (candidates.size() > most) list += ", … (" + std::to_string(candidates.size()) + " in all)";
+  if (candidates.size() > most) list += ", … (docs/scene-format.md has all)";
   const auto close = nearest(word, candidates);
   return close ? "did you mean `" + *close + "`? (allowed: " + list + ")" : "allowed: " + list;
 }

@@ -115,6 +115,28 @@ TEST(Compile, TransformsDistributeOverUnions) {
     EXPECT_GT(value(program, some_affine().point(center + Vec3d{0.1, 0, 0})), 1);
 }
 
+// Wherever it is placed, and in whatever order.
+TEST(Compile, ABlendTakesTheSkeletonsOfAGroupAsItsOwn) {
+  const SegmentSkeleton limb{{0, 0, 0}, {1, 1, 0}, 0.5, 0.3};
+  Builder grouped, listed;
+  const auto pair = grouped.add(Union{{grouped.segment(limb), grouped.point({2, 0, 0}, 1)}, true});
+  grouped.blend({grouped.place(some_similarity(), pair), grouped.add(Union{{pair}, true})});
+  const auto segment = listed.segment(limb), point = listed.point({2, 0, 0}, 1);
+  listed.blend({listed.place(some_similarity(), segment), listed.place(some_similarity(), point), segment, point});
+  const FieldProgram a = compiled(grouped.description()), b = compiled(listed.description());
+  EXPECT_EQ(a.parts()[0].blend.segments.skeletons, b.parts()[0].blend.segments.skeletons);
+  EXPECT_EQ(a.parts()[0].blend.points.skeletons, b.parts()[0].blend.points.skeletons);
+  EXPECT_EQ(a.parts()[0].blend.size(), 4u);
+}
+
+TEST(Compile, AGroupOutsideABlendIsAUnion) {
+  Builder grouped, united;
+  grouped.add(Union{{grouped.blend({grouped.point({0, 0, 0}, 1)}), grouped.point({2, 0, 0}, 1)}, true});
+  united.add(Union{{united.blend({united.point({0, 0, 0}, 1)}), united.point({2, 0, 0}, 1)}});
+  const FieldProgram a = compiled(grouped.description()), b = compiled(united.description());
+  for (const Vec3d& p : {Vec3d{0.3, 0.4, 0.5}, Vec3d{1.9, 0.1, 0.4}}) EXPECT_EQ(value(a, p), value(b, p));
+}
+
 TEST(Compile, LeavesABlendThatIsPlacedManyTimesInItsOwnCoordinates) {
   Builder many, once;
   const auto a = many.blend({many.segment({{0, 0, 0}, {1, 1, 0}, 0.5, 0.3})});
@@ -212,10 +234,11 @@ TEST(Compile, RefusesWhatABlendCannotHold) {
   const auto inner = builder.blend({a});
   const auto squashed = builder.place(Affine::scale({1, 2, 1}), a);
   const auto united = builder.add(Union{{a}});
-  builder.blend({a, inner, squashed, united});
+  builder.blend({a, inner, builder.add(Union{{a, squashed}, true}), united});
   const Diagnostics all = errors(builder);
   ASSERT_EQ(all.size(), 3u);
   EXPECT_THAT(all[0].message, HasSubstr("blend inside a blend"));
+  EXPECT_THAT(all[0].hint, HasSubstr("`sum`"));  // what to write instead
   EXPECT_THAT(all[1].message, HasSubstr("changes shape"));
   EXPECT_THAT(all[2].message, HasSubstr("union inside a blend"));
   EXPECT_EQ(all[1].where.line, 3);

@@ -271,8 +271,85 @@ class TriangleSum {
   V<Real> p_;
   Sums<Real> sum_;
 };
+/// A triangle under the compact kernel: lines parallel to the edge across from its first vertex, each cut where the
+/// support ends, and between those where what a line meets of the support changes.
+template <class Real>
+class CompactTriangleSum {
+ public:
+  CompactTriangleSum(const TriangleSkeleton& s, const Vec3d& p, const Kernel& kernel)
+      : kernel_(kernel),
+        from_(vector_of<Real>(s.vertices[0]) - vector_of<Real>(p)),
+        u_(vector_of<Real>(s.vertices[1]) - vector_of<Real>(s.vertices[0])),
+        v_(vector_of<Real>(s.vertices[2]) - vector_of<Real>(s.vertices[1])),
+        tau_(s.radii[0]),
+        tau_u_(Real(s.radii[1]) - s.radii[0]),
+        tau_v_(Real(s.radii[2]) - s.radii[1]) {
+    const Real area = size_of(V<Real>(cross(u_, v_)));
+    for_each_piece(Real(0), Real(1), changes(), [&](const Real& a, const Real& b) {
+      over_with_roots<Real>(a, b, 2, [&](const Real& x, const Real& weight) { add_line(x, Real(weight * area)); });
+    });
+    sum_.scale(1 / normalisation<Real>(kernel, 2));
+  }
+  const Sums<Real>& sums() const { return sum_; }
+
+ private:
+  // R^2 tau^2 - |v|^2 at from + x u + y v, for a given x: a y^2 + b y + c, above 0 inside the support.
+  struct Quadratic {
+    Real a, b, c;
+    Real at(const Real& y) const { return (a * y + b) * y + c; }
+    Real discriminant() const { return b * b - 4 * a * c; }
+  };
+  Quadratic inside(const Real& x) const {
+    const V<Real> at = from_ + u_ * x;
+    const Real tau = tau_ + tau_u_ * x, R2 = Real(kernel_.shape) * kernel_.shape;
+    return {R2 * tau_v_ * tau_v_ - dot(v_, v_), 2 * (R2 * tau * tau_v_ - dot(at, v_)), R2 * tau * tau - dot(at, at)};
+  }
+  // The edge of the support crosses the two edges that lines begin and end at, or touches a line.
+  std::vector<Real> changes() const {
+    std::vector<Real> all;
+    const auto add = [&](const auto& f) {
+      for (const Real& x : sign_changes(Real(0), Real(1), f)) all.push_back(x);
+    };
+    add([&](const Real& x) { return inside(x).at(Real(0)); });
+    add([&](const Real& x) { return inside(x).at(x); });
+    add([&](const Real& x) { return inside(x).discriminant(); });
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+  template <class Visit>
+  static void for_each_piece(const Real& a, const Real& b, const std::vector<Real>& cuts, const Visit& visit) {
+    Real begin = a;
+    for (const Real& cut : cuts) {
+      if (!(cut > begin && cut < b)) continue;
+      visit(begin, cut);
+      begin = cut;
+    }
+    visit(begin, b);
+  }
+  void add_line(const Real& x, const Real& weight) {
+    using std::sqrt;
+    const Quadratic q = inside(x);
+    std::vector<Real> ends;
+    if (const Real d = q.discriminant(); d > 0)
+      for (const int sign : {-1, 1}) ends.push_back((-q.b + sign * sqrt(d)) / (2 * q.a));
+    std::sort(ends.begin(), ends.end());
+    for_each_piece(Real(0), x, ends, [&](const Real& a, const Real& b) {
+      if (!(q.at((a + b) / 2) > 0)) return;
+      over_with_roots<Real>(a, b, 1, [&](const Real& y, const Real& w) {
+        sum_.add(kernel_, 2, (from_ + u_ * x + v_ * y) * Real(-1), Real(tau_ + tau_u_ * x + tau_v_ * y),
+                 Real(weight * w));
+      });
+    });
+  }
+
+  Kernel kernel_;
+  V<Real> from_, u_, v_;
+  Real tau_, tau_u_, tau_v_;
+  Sums<Real> sum_;
+};
 template <class Real>
 Sums<Real> field(const TriangleSkeleton& s, const Vec3d& p, const Kernel& kernel) {
+  if (kernel.family == KernelFamily::Compact) return CompactTriangleSum<Real>(s, p, kernel).sums();
   return TriangleSum<Real>(s, p, kernel).sums();
 }
 

@@ -144,8 +144,6 @@ TEST(Oracle, Arcs) {
                               s.axis2 * cosine - s.axis1 * sine};
   });
 }
-// Not under the compact kernel, whose edge cuts a triangle anywhere: bounded_surfaces_test.cpp holds it against sums of
-// its parts.
 TEST(Oracle, Triangles) {
   Random random(804);
   Worst worst;
@@ -164,6 +162,30 @@ TEST(Oracle, Triangles) {
     EXPECT_LE(error, 1e-12) << i;
     worst.add(std::string("triangle ") + names[i % 2] + (is_far ? " far away" : ""), error);
   }
+}
+
+// The edge of the support cuts the triangle anywhere: through it, around it, at a vertex.
+TEST(Oracle, TrianglesUnderTheCompactKernel) {
+  Random random(806);
+  Worst worst;
+  int checked = 0;
+  for (int i = 0; i < 40; ++i) {
+    const TriangleSkeleton s = random.triangle();
+    const Kernel kernel = kernel_of(random, KernelFamily::Compact, 7);
+    const Vec3d normal = normalize(cross(s.vertices[1] - s.vertices[0], s.vertices[2] - s.vertices[0])).vec();
+    const double x = random.between(-0.3, 1.2), y = random.between(-0.3, 1.2);
+    const Vec3d p = s.vertices[0] + (s.vertices[1] - s.vertices[0]) * x + (s.vertices[2] - s.vertices[0]) * y +
+                    normal * (s.radii[0] * random.between(0, 1.2));
+    const Oracle exact = test::oracle::field<Real>(s, p, kernel);
+    if (exact.value < 1e-6) continue;  // at the edge of the support, or outside
+    const SkeletonSample sample = sample_of(s, p, kernel);
+    const double error = std::max({error_of(sample.value, exact.value), error_of(sample.gradient, exact.gradient),
+                                   error_of(sample.si_gradient, exact.si)});
+    EXPECT_LE(error, 1e-9) << "seed 806 round " << i << ", degree " << kernel.degree << " support " << kernel.shape;
+    worst.add("triangle compact", error);
+    ++checked;
+  }
+  EXPECT_GT(checked, 15);
 }
 
 TEST(Oracle, Operator) {

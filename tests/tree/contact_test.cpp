@@ -87,6 +87,30 @@ TEST(Contact, BodiesTouchExactly) {
   }
 }
 
+// A bulge has the colour of its body, also where it is steep, and the other body's field rises faster than its own.
+TEST(Contact, BelongsToTheBodyWhoseDeformedFieldIsLargest) {
+  test::Random random(6);
+  for (int i = 0; i < 2000; ++i) {
+    std::vector<double> f{random.between(0, 2), random.between(0, 2), random.between(0, 2)};
+    const Contact whole{bulges[static_cast<std::size_t>(i) % bulges.size()], false};
+    const std::size_t owner = whole.owner(std::span<const double>(f));
+    const double value = field_of(whole, f);
+    std::swap(f[0], f[owner]);
+    EXPECT_NEAR(field_of(Contact{whole.bulge, true}, f), value, 1e-12) << "seed 6 round " << i;
+  }
+  // on the bulge of the first, where the second contributes more: 0.5 * 1.44 against 0.676
+  const Contact steep{HeightBulge{.from = 0.2, .at = 0.7, .height = 0.5}, false};
+  const double f[] = {0.676, 0.5};
+  EXPECT_NEAR(field_of(steep, {f[0], f[1]}), 1, 1e-3);
+  EXPECT_EQ(steep.owner(f), 0u);
+}
+
+// Those of the paper's figure do not pass through each other: b' < 1 on the inner flank.
+TEST(Contact, UsualBulgesMeetBetweenTheBodies) {
+  for (const Bulge& b : {Bulge(PlainBulge{}), Bulge(HeightBulge{})})
+    for (double t = 0; t < 1; t += 1e-3) EXPECT_LT(contact_term(b, test::Slope::variable(t, 0)).slope[0], 1);
+}
+
 TEST(Contact, FarBodiesStayAsTheyAre) {
   const Contact one{PlainBulge{0.4}, true};
   EXPECT_EQ(field_of(one, {0.7, 0.4, 0.1}), 0.7);

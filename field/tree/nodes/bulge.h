@@ -52,7 +52,7 @@ struct PlainBulge {
 /// Two cubics that meet at its largest value.
 struct HeightBulge {
   static constexpr NodeInfo info{"height", "A bulge with a height of its own, and a place for it."};
-  double from = 0.4, at = 0.65, height = 0.25;
+  double from = 0.2, at = 0.65, height = 0.25;  // those of the paper's Fig. 12 (b), for a surface at 1
   static void keys(auto&& key) {
     key("from", &HeightBulge::from, bulge::between_0_and_1, "field of the other body at which the bulge ends");
     key("at", &HeightBulge::at, bulge::between_0_and_1, "field of the other body where it is highest");

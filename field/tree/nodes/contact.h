@@ -1,6 +1,7 @@
 // Precise contact: bodies that touch press each other flat instead of blending.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 
@@ -34,6 +35,20 @@ struct Contact {
   }
   /// Where all fields are below the bulge's end, the value is the largest of them.
   double child_level(double level, std::size_t) const { return std::min(level, from()); }
+  /// The body whose deformed field is largest: a bulge is of its body, though it follows the field of the other.
+  std::size_t owner(std::span<const double> f) const {
+    if (first_only) return 0;
+    const std::size_t most = largest(f, f.size()), second = largest(f, most);
+    std::size_t best = 0;
+    double best_field = -1;
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      const double deformed = f[i] + contact_term(bulge, f[i == most ? second : most]);
+      if (deformed <= best_field) continue;
+      best = i;
+      best_field = deformed;
+    }
+    return best;
+  }
   template <Number X>
   X value(std::span<const X> f) const {
     if (first_only) return first(f);
@@ -48,6 +63,12 @@ struct Contact {
  private:
   double from() const {
     return std::visit([](const auto& b) { return b.from; }, bulge);
+  }
+  static std::size_t largest(std::span<const double> f, std::size_t but) {
+    std::size_t best = but == 0 ? 1 : 0;
+    for (std::size_t i = best + 1; i < f.size(); ++i)
+      if (i != but && f[i] > f[best]) best = i;
+    return best;
   }
   template <Number X>
   X first(std::span<const X> f) const {
