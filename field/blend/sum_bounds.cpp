@@ -72,6 +72,35 @@ void SumBounds::add(const SkeletonSample& s, double distance, double radius, int
   S_error_ += sample_error * (m * s.value * radius / distance);
 }
 
+// Within rho distances shrink by 1 - rho / nearest at most, and B3 and B4 hold with the sums of the sources.
+void SumBounds::add(const SourceSums& sources) {
+  const SourceSample s = sources.at(center_);
+  const int m = sources.exponent();
+  const double q = rho_ / s.nearest, f = s.sum.value;
+  log_slope_ = std::max(log_slope_, q < 1 ? m / (s.nearest - rho_) * (1 + 1e-12) : inf);
+  low_ += f / integer_power(1 + q, m) * (1 - 1e-10);
+  if (!(q < 0.9)) {
+    unbounded_ = true;
+    return;
+  }
+  const double shrink = (1 + 1e-12) / (1 - q), grown = integer_power(shrink, m + 2);
+  f_ += f;
+  gradient_ += s.sum.gradient;
+  S_ += s.sum.si_gradient;
+  J_ += s.sum.si_jacobian;
+  second_ += m * (m + 1) * grown * s.second;
+  S_second_ += m * (m + 1) * (m + 2) * grown * shrink * s.third;
+  error_ += sample_error * f;
+  slope_error_ += sample_error * (m * f / s.nearest);
+  S_error_ += sample_error * (m * f * sources.largest_radius() / s.nearest);
+}
+
+void SumBounds::add_error(double f, double S) {
+  error_ += f;
+  S_error_ += S;
+  low_ = std::max(0.0, low_ - f);
+}
+
 void SumBounds::add(const Between& b) {
   const Interval& f = b.f;
   log_slope_ = std::max(log_slope_, b.log_slope);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "field/blend/blend_field.h"
+#include "field/blend/source_sums.h"
 #include "field/math/box3.h"
 #include "field/number/interval.h"
 
@@ -26,6 +27,10 @@ class SumBounds {
     double log_slope;  ///< of |grad ln f|
   };
   void add(const Between&);
+  /// Sources: the same from one remainder for all of them.
+  void add(const SourceSums&);
+  /// What f and S may be off altogether.
+  void add_error(double f, double S);
 
   const Vec3d& center() const { return center_; }
   /// Half the diagonal of the box.

@@ -26,7 +26,7 @@ constexpr std::size_t max_records = 8'000'000;
 // to meet, and a search along it takes less than cells take memory.
 constexpr std::size_t few_members = 64;
 // Neighbours overlap so that no root falls between them by rounding; the restricted trees hold a little farther.
-constexpr double overlap = 1e-9, validity = 4e-9;
+constexpr double overlap = 1e-6, validity = 4e-6;
 
 Vec3<Interval> span_of(const Box3& box) {
   return {{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
@@ -57,7 +57,7 @@ bool is_fine_enough(std::size_t records, bool shrinks, bool one_sheet, int level
 std::optional<Branch> examined(const std::shared_ptr<const FieldTree>& parent, const Vec3d& center, double half,
                                int level) {
   Branch b{center, half, parent, false};
-  FieldTree own = restricted(*parent, Box3{center, center}.padded(half * (1 + validity)));
+  FieldTree own = localized(*parent, Box3{center, center}.padded(half * (1 + validity)));
   const auto f = value(own, with_slopes(span_of(b.box().padded(half * validity))));
   if (!f.value.contains(1)) return {};
   const bool one_sheet = excludes_zero(f.slope[0]) || excludes_zero(f.slope[1]) || excludes_zero(f.slope[2]);
@@ -72,7 +72,7 @@ std::optional<Branch> examined(const std::shared_ptr<const FieldTree>& parent, c
 Branch root_of(const FieldTree& tree, const Member& member) {
   const Vec3d center = member.bounds.center();
   const double half = 0.5 * max_component(member.bounds.size()) * (1 + 1e-6);
-  FieldTree own = restricted(tree, Box3{center, center}.padded(half * (1 + validity)), member.record);
+  FieldTree own = localized(tree, Box3{center, center}.padded(half * (1 + validity)), member.record);
   return {center, half, std::make_shared<const FieldTree>(std::move(own)), false};
 }
 

@@ -1,0 +1,49 @@
+// Turns what lies away from a box into weighted points; internal to blend/.
+#pragma once
+
+#include "field/blend/blend_field.h"
+#include "field/blend/source_rule.h"
+#include "field/blend/source_sums.h"
+#include "field/math/box3.h"
+
+namespace marrow {
+
+/// For one box: primitives, or parts of them, go to sources where rules are certified, and to a rest where not.
+class SourceMaker {
+ public:
+  /// `share` of the error is what a primitive may add however weak it is.
+  SourceMaker(const BlendField&, const Box3&, double relative_error, double share);
+
+  void add(const PointSkeleton&);
+  void add(const SegmentSkeleton&);
+  void add(const ArcSkeleton&);
+  void add(const TriangleSkeleton&);
+
+  SourceSums points, curves, surfaces;
+  double f_error = 0, S_error = 0;
+  PrimitiveList<PointSkeleton> rest_points;
+  PrimitiveList<SegmentSkeleton> rest_segments;
+  PrimitiveList<ArcSkeleton> rest_arcs;
+  PrimitiveList<TriangleSkeleton> rest_triangles;
+
+ private:
+  struct Weak {
+    double distance, lifted;
+    bool too_near;
+  };
+  Weak seen(double distance, double least_radius) const;
+  double allowed(double mass, double radius, double distance, int m) const;
+  void note(double mass, double radius, double distance, int m, double relative);
+  void emit(SourceSums&, const Vec3d& at, double weight, double radius, int dimension) const;
+  bool add_part(const SegmentSkeleton&);
+  bool add_part(const ArcSkeleton&);
+  bool add_part(const TriangleSkeleton&);
+
+  int degree_;
+  double per_lift_ = 0;  ///< lift over radius: 1 / scale of the Cauchy kernel; 0 for the inverse one
+  double unit_[3];       ///< weight of a unit of measure, by dimension
+  Vec3d center_;
+  double rho_, relative_error_, share_;
+};
+
+}  // namespace marrow
