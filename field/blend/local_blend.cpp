@@ -104,8 +104,12 @@ BlendBounds LocalBlend::bounds(const Box3& box) const {
   if (!is_finite(box.center()) || !is_finite(box.size())) return blend_bounds(blend_, box);
   SumBounds sum(rest_, box);
   for_each_sums([&](const SourceSums& s) { sum.add(s); });
-  sum.add_error(f_error_, S_error_);
   return blend_bounds(blend_, sum, {blend_.alpha, {}});
+}
+
+std::size_t LocalBlend::near_count() const {
+  if (rest_.kernel == KernelFamily::Compact) return 0;
+  return rest_.points.size() + rest_.segments.size() + rest_.triangles.size() + rest_.arcs.size();
 }
 
 std::size_t LocalBlend::source_count() const {

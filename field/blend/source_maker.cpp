@@ -13,14 +13,16 @@
 #include "field/math/elementary.h"
 #include "field/math/gauss_rule.h"
 #include "field/skeleton/distance.h"
+#include "field/skeleton/parts.h"
 #include "field/skeleton/radii.h"
 
 namespace marrow {
 namespace {
 
-// Over half the diagonal of the box: what is nearer is left to the boxes inside it. There distances are up to three
-// times as large, and rules shorter.
-constexpr double nearest = 0.5;
+// Over half the diagonal of the box: what is nearer has no useful bounds there, and is left to the boxes inside it.
+constexpr double nearest = 0.4;
+// And longer parts than this are cut.
+constexpr double largest = 1;
 // Parts of a primitive are halves of halves down to this.
 constexpr int deepest = 12;
 
@@ -36,57 +38,19 @@ Nodes rule_of(int count, std::index_sequence<Counts...>) {
 }
 Nodes rule_of(int count) { return rule_of(count, std::make_index_sequence<most_rule_nodes>()); }
 
-double area(const TriangleSkeleton& s) {
-  return 0.5 * length(cross(s.vertices[1] - s.vertices[0], s.vertices[2] - s.vertices[0]));
-}
-
-std::array<SegmentSkeleton, 2> parts(const SegmentSkeleton& s) {
-  const Vec3d middle = lerp(s.from, s.to, 0.5);
-  const double radius = 0.5 * (s.radius_from + s.radius_to);
-  return {SegmentSkeleton{s.from, middle, s.radius_from, radius}, SegmentSkeleton{middle, s.to, radius, s.radius_to}};
-}
-std::array<ArcSkeleton, 2> parts(const ArcSkeleton& s) {
-  ArcSkeleton a = s, b = s;
-  a.end = b.begin = 0.5 * (s.begin + s.end);
-  a.radius_to = b.radius_from = 0.5 * (s.radius_from + s.radius_to);
-  return {a, b};
-}
-std::array<TriangleSkeleton, 4> parts(const TriangleSkeleton& s) {
-  const auto& v = s.vertices;
-  const auto& r = s.radii;
-  const Vec3d ab = lerp(v[0], v[1], 0.5), bc = lerp(v[1], v[2], 0.5), ca = lerp(v[2], v[0], 0.5);
-  const double rab = 0.5 * (r[0] + r[1]), rbc = 0.5 * (r[1] + r[2]), rca = 0.5 * (r[2] + r[0]);
-  return {TriangleSkeleton{{v[0], ab, ca}, {r[0], rab, rca}}, TriangleSkeleton{{ab, v[1], bc}, {rab, r[1], rbc}},
-          TriangleSkeleton{{ca, bc, v[2]}, {rca, rbc, r[2]}}, TriangleSkeleton{{bc, ca, ab}, {rbc, rca, rab}}};
-}
-
-Vec3d place(const ArcSkeleton& s, double angle) {
-  const auto [sine, cosine] = sincos(angle);
-  return s.center + s.axis1 * (s.major * cosine) + s.axis2 * (s.major * sine);
-}
-
 // A lower bound: that of the circle, or of a ball around the arc.
 double least_distance(const ArcSkeleton& s, const Vec3d& p) {
   const double half = 0.5 * (s.end - s.begin);
-  return std::max(distance_to(s, p), length(p - place(s, s.begin + half)) - s.major * half);
+  return std::max(distance_to(s, p), length(p - place_at(s, s.begin + half)) - s.major * half);
 }
 double least_distance(const auto& s, const Vec3d& p) { return distance_to(s, p); }
 
-// Calls add for the whole, or for as large parts of it as it takes; what it never takes goes to the rest.
-template <class Skeleton, class Add, class Rest>
-void divided(const Skeleton& whole, const Add& add, const Rest& rest) {
-  std::vector<std::pair<Skeleton, int>> open{{whole, 0}};
-  while (!open.empty()) {
-    const auto [s, depth] = open.back();
-    open.pop_back();
-    if (add(s)) continue;
-    if (depth == deepest) {
-      rest(s);
-      continue;
-    }
-    for (const Skeleton& part : parts(s)) open.push_back({part, depth + 1});
-  }
+// Over that of the longest part that is kept as it is: a closed form costs about the same for a part as for the whole.
+double size(const TriangleSkeleton& s) {
+  const auto& v = s.vertices;
+  return 0.3 * std::max({length(v[1] - v[0]), length(v[2] - v[1]), length(v[0] - v[2])});
 }
+double size(const auto& s) { return 0.5 * measure(s); }
 
 }  // namespace
 
@@ -110,11 +74,11 @@ SourceMaker::SourceMaker(const BlendField& blend, const Box3& box, double relati
 }
 
 // From anywhere in the box.
-SourceMaker::Weak SourceMaker::seen(double distance, double least_radius) const {
+SourceMaker::View SourceMaker::seen(double distance, double least_radius) const {
   const double clear = distance - rho_, lift = per_lift_ * least_radius;
   // Under the Cauchy kernel a skeleton is never nearer than its lift.
   const double lifted = std::sqrt(std::max(0.0, clear) * std::max(0.0, clear) + lift * lift);
-  return {clear, lifted, lifted < nearest * rho_};
+  return {lifted, lifted < nearest * rho_};
 }
 
 double SourceMaker::allowed(double mass, double radius, double distance, int m) const {
@@ -141,9 +105,9 @@ void SourceMaker::add(const PointSkeleton& s) {
   else emit(points, s.at, 1, s.radius, 0);
 }
 
-bool SourceMaker::add_part(const SegmentSkeleton& s) {
-  const double size = length(s.to - s.from), radius = largest_radius(s), half = 0.5 * (radius - least_radius(s));
-  const double distance = seen(distance_to(s, center_), least_radius(s)).lifted, mass = unit_[1] * size;
+bool SourceMaker::add_part(const SegmentSkeleton& s, double distance) {
+  const double size = measure(s), radius = largest_radius(s), half = 0.5 * (radius - least_radius(s));
+  const double mass = unit_[1] * size;
   const int m = curves.exponent();
   const double relative = allowed(mass, radius, distance, m);
   const auto nodes = rule_nodes({.half_length = 0.5 * size,
@@ -163,12 +127,10 @@ bool SourceMaker::add_part(const SegmentSkeleton& s) {
   return true;
 }
 
-bool SourceMaker::add_part(const ArcSkeleton& s) {
-  const double angle = s.end - s.begin, size = s.major * angle, radius = largest_radius(s);
+bool SourceMaker::add_part(const ArcSkeleton& s, double distance) {
+  const double angle = s.end - s.begin, size = measure(s), radius = largest_radius(s);
   const double half = 0.5 * (radius - least_radius(s)), mass = unit_[1] * size;
-  const double distance = seen(least_distance(s, center_), least_radius(s)).lifted;
   const int m = curves.exponent();
-  if (!(distance > 0)) return false;
   const double relative = allowed(mass, radius, distance, m);
   const auto nodes = rule_nodes({.half_length = 0.5 * size,
                                  .half_angle = 0.5 * angle,
@@ -182,7 +144,7 @@ bool SourceMaker::add_part(const ArcSkeleton& s) {
   const Nodes rule = rule_of(*nodes);
   for (std::size_t k = 0; k < rule.positions.size(); ++k) {
     const double t = rule.positions[k];
-    emit(curves, place(s, s.begin + angle * t), size * rule.weights[k],
+    emit(curves, place_at(s, s.begin + angle * t), size * rule.weights[k],
          s.radius_from + (s.radius_to - s.radius_from) * t, 1);
   }
   note(mass, radius, distance, m, relative);
@@ -191,10 +153,9 @@ bool SourceMaker::add_part(const ArcSkeleton& s) {
 
 // Lines from one corner to the opposite side: at a + u (b - a) + u v (c - b) the measure is 2 area u du dv. Each of the
 // two rules may err by half.
-bool SourceMaker::add_part(const TriangleSkeleton& s) {
+bool SourceMaker::add_part(const TriangleSkeleton& s, double distance) {
   const auto& [a, b, c] = s.vertices;
-  const double radius = largest_radius(s), half = 0.5 * (radius - least_radius(s)), mass = unit_[2] * area(s);
-  const double distance = seen(least_distance(s, center_), least_radius(s)).lifted;
+  const double radius = largest_radius(s), half = 0.5 * (radius - least_radius(s)), mass = unit_[2] * measure(s);
   const int m = surfaces.exponent();
   const double relative = allowed(mass, radius, distance, m);
   RulePiece line{.half_length = 0.5 * length(c - b),
@@ -212,47 +173,33 @@ bool SourceMaker::add_part(const TriangleSkeleton& s) {
   for (std::size_t i = 0; i < us.positions.size(); ++i)
     for (std::size_t k = 0; k < vs.positions.size(); ++k) {
       const double u = us.positions[i], uv = u * vs.positions[k];
-      emit(surfaces, a + (b - a) * u + (c - b) * uv, 2 * area(s) * u * us.weights[i] * vs.weights[k],
+      emit(surfaces, a + (b - a) * u + (c - b) * uv, 2 * measure(s) * u * us.weights[i] * vs.weights[k],
            s.radii[0] + (s.radii[1] - s.radii[0]) * u + (s.radii[2] - s.radii[1]) * uv, 2);
     }
   note(mass, radius, distance, m, relative);
   return true;
 }
 
-void SourceMaker::add(const SegmentSkeleton& s) {
-  if (seen(distance_to(s, center_), least_radius(s)).too_near || !(length(s.to - s.from) > 0)) {
-    rest_segments.skeletons.push_back(s);
-    return;
+// Parts may be away where the whole is near; those that are about as large as the box are left to smaller boxes.
+template <class Skeleton>
+void SourceMaker::divide(const Skeleton& whole, PrimitiveList<Skeleton>& rest) {
+  if (!(measure(whole) > 0)) return;
+  std::vector<std::pair<Skeleton, int>> open{{whole, 0}};
+  while (!open.empty()) {
+    const auto [s, depth] = open.back();
+    open.pop_back();
+    const View view = seen(least_distance(s, center_), least_radius(s));
+    if (!view.too_near && add_part(s, view.lifted)) continue;
+    if (depth == deepest || (view.too_near && size(s) < largest * rho_)) {
+      rest.skeletons.push_back(s);
+      continue;
+    }
+    for (const Skeleton& part : parts(s)) open.push_back({part, depth + 1});
   }
-  divided(
-      s, [&](const SegmentSkeleton& part) { return add_part(part); },
-      [&](const SegmentSkeleton& part) { rest_segments.skeletons.push_back(part); });
 }
 
-// A part of an arc may be far where its circle is near.
-void SourceMaker::add(const ArcSkeleton& s) {
-  const double half = 0.5 * s.major * (s.end - s.begin);
-  const Weak all = seen(least_distance(s, center_), least_radius(s));
-  if (all.too_near && half < 2 * rho_) {
-    rest_arcs.skeletons.push_back(s);
-    return;
-  }
-  if (!all.too_near && add_part(s)) return;
-  if (s.end - s.begin < 1e-3) {
-    rest_arcs.skeletons.push_back(s);
-    return;
-  }
-  for (const ArcSkeleton& part : parts(s)) add(part);
-}
-
-void SourceMaker::add(const TriangleSkeleton& s) {
-  if (seen(least_distance(s, center_), least_radius(s)).too_near || !(area(s) > 0)) {
-    rest_triangles.skeletons.push_back(s);
-    return;
-  }
-  divided(
-      s, [&](const TriangleSkeleton& part) { return add_part(part); },
-      [&](const TriangleSkeleton& part) { rest_triangles.skeletons.push_back(part); });
-}
+void SourceMaker::add(const SegmentSkeleton& s) { divide(s, rest_segments); }
+void SourceMaker::add(const ArcSkeleton& s) { divide(s, rest_arcs); }
+void SourceMaker::add(const TriangleSkeleton& s) { divide(s, rest_triangles); }
 
 }  // namespace marrow

@@ -27,17 +27,20 @@ class SourceMaker {
   PrimitiveList<TriangleSkeleton> rest_triangles;
 
  private:
-  struct Weak {
-    double distance, lifted;
+  /// A skeleton from the box: a lower bound of its distance, with its lift, and whether that is too little.
+  struct View {
+    double lifted;
     bool too_near;
   };
-  Weak seen(double distance, double least_radius) const;
+  View seen(double distance, double least_radius) const;
   double allowed(double mass, double radius, double distance, int m) const;
   void note(double mass, double radius, double distance, int m, double relative);
   void emit(SourceSums&, const Vec3d& at, double weight, double radius, int dimension) const;
-  bool add_part(const SegmentSkeleton&);
-  bool add_part(const ArcSkeleton&);
-  bool add_part(const TriangleSkeleton&);
+  template <class Skeleton>
+  void divide(const Skeleton&, PrimitiveList<Skeleton>& rest);
+  bool add_part(const SegmentSkeleton&, double distance);
+  bool add_part(const ArcSkeleton&, double distance);
+  bool add_part(const TriangleSkeleton&, double distance);
 
   int degree_;
   double per_lift_ = 0;  ///< lift over radius: 1 / scale of the Cauchy kernel; 0 for the inverse one

@@ -78,15 +78,41 @@ template <bool WithSlopes>
 void values_128(std::span<const Group> g, int m, const Vec3d& p, Totals& out) { fold<false>(g, m, p, out); }
 void slopes_128(std::span<const Group> g, int m, const Vec3d& p, Totals& out) { fold<true>(g, m, p, out); }
 
+// As far away as within rho of p they can be.
+[[gnu::always_inline]] inline void fold_least(std::span<const Group> groups, int m, const Vec3d& p, double rho,
+                                              Lanes& out) {
+  Lanes sum{};
+  for (const Group& g : groups) {
+    const Lanes x = p.x - load(g.x), y = p.y - load(g.y), z = p.z - load(g.z);
+    Lanes distance = x * x + y * y + z * z + load(g.lift_squared), f = load(g.weight);
+    take_root(distance);
+    const Lanes inverse = 1.0 / (distance + rho);
+    for (int i = 0; i < m; ++i) f *= inverse;
+    sum += f;
+  }
+  out = sum;
+}
+[[gnu::target("avx512f,prefer-vector-width=512")]] void least_512(std::span<const Group> g, int m, const Vec3d& p,
+                                                                  double rho, Lanes& out) {
+  fold_least(g, m, p, rho, out);
+}
+[[gnu::target("avx2")]] void least_256(std::span<const Group> g, int m, const Vec3d& p, double rho, Lanes& out) {
+  fold_least(g, m, p, rho, out);
+}
+void least_128(std::span<const Group> g, int m, const Vec3d& p, double rho, Lanes& out) {
+  fold_least(g, m, p, rho, out);
+}
+
 struct Folds {
   void (*values)(std::span<const Group>, int, const Vec3d&, Totals&);
   void (*slopes)(std::span<const Group>, int, const Vec3d&, Totals&);
+  void (*least)(std::span<const Group>, int, const Vec3d&, double, Lanes&);
 };
 
 const Folds& folds() {
-  static const Folds best = __builtin_cpu_supports("avx512f") ? Folds{values_512, slopes_512}
-                            : __builtin_cpu_supports("avx2")  ? Folds{values_256, slopes_256}
-                                                              : Folds{values_128, slopes_128};
+  static const Folds best = __builtin_cpu_supports("avx512f") ? Folds{values_512, slopes_512, least_512}
+                            : __builtin_cpu_supports("avx2")  ? Folds{values_256, slopes_256, least_256}
+                                                              : Folds{values_128, slopes_128, least_128};
   return best;
 }
 
@@ -123,6 +149,12 @@ SkeletonSample SourceSums::value_at(const Vec3d& p) const {
   s.value = total(t.f);
   s.si_gradient = total(t.S) * -static_cast<double>(exponent_);
   return s;
+}
+
+double SourceSums::least_within(const Vec3d& p, double rho) const {
+  Lanes sum;
+  folds().least(groups_, exponent_, p, rho, sum);
+  return total(sum);
 }
 
 SourceSample SourceSums::at(const Vec3d& p) const {

@@ -41,6 +41,8 @@ class SourceSums {
   SourceSample at(const Vec3d& p) const;
   /// Only value and si_gradient.
   SkeletonSample value_at(const Vec3d& p) const;
+  /// A lower bound of the value within rho of p.
+  double least_within(const Vec3d& p, double rho) const;
 
   static constexpr int lanes = 8;
   struct alignas(64) Group {

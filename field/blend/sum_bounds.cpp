@@ -5,6 +5,7 @@
 
 #include "field/kernel/profile.h"
 #include "field/skeleton/distance.h"
+#include "field/skeleton/parts.h"
 #include "field/skeleton/radii.h"
 #include "field/skeleton/skeletons.h"
 
@@ -78,7 +79,8 @@ void SumBounds::add(const SourceSums& sources) {
   const int m = sources.exponent();
   const double q = rho_ / s.nearest, f = s.sum.value;
   log_slope_ = std::max(log_slope_, q < 1 ? m / (s.nearest - rho_) * (1 + 1e-12) : inf);
-  low_ += f / integer_power(1 + q, m) * (1 - 1e-10);
+  // one factor for all of them tells little where one is near
+  low_ += (q < 0.2 ? f / integer_power(1 + q, m) : sources.least_within(center_, rho_)) * (1 - 1e-10);
   if (!(q < 0.9)) {
     unbounded_ = true;
     return;
@@ -93,12 +95,6 @@ void SumBounds::add(const SourceSums& sources) {
   error_ += sample_error * f;
   slope_error_ += sample_error * (m * f / s.nearest);
   S_error_ += sample_error * (m * f * sources.largest_radius() / s.nearest);
-}
-
-void SumBounds::add_error(double f, double S) {
-  error_ += f;
-  S_error_ += S;
-  low_ = std::max(0.0, low_ - f);
 }
 
 void SumBounds::add(const Between& b) {
@@ -146,6 +142,47 @@ Interval SumBounds::J(std::size_t i, std::size_t j) const {
   return pad(J_.rows[i][j], S_second_ * rho_ + sample_error * std::fabs(J_.rows[i][j]));
 }
 
+namespace {
+
+constexpr int dimension(const TriangleSkeleton&) { return 2; }
+constexpr int dimension(const auto&) { return 1; }
+
+double farthest(const SegmentSkeleton& s, const Vec3d& p) { return std::max(length(p - s.from), length(p - s.to)); }
+double farthest(const ArcSkeleton& s, const Vec3d& p) {
+  return length(p - place_at(s, 0.5 * (s.begin + s.end))) + 0.5 * measure(s);
+}
+double farthest(const TriangleSkeleton& s, const Vec3d& p) {
+  return std::max({length(p - s.vertices[0]), length(p - s.vertices[1]), length(p - s.vertices[2])});
+}
+
+// Of each part the kernel of the largest distance over the least radius, over the largest radius.
+template <class Skeleton>
+double least_field(const Skeleton& s, const Profile& profile, const Vec3d& center, double rho, int cuts) {
+  if (cuts > 0) {
+    double sum = 0;
+    for (const Skeleton& part : parts(s)) sum += least_field(part, profile, center, rho, cuts - 1);
+    return sum;
+  }
+  const double radius = largest_radius(s), x = (farthest(s, center) + rho) / least_radius(s);
+  const double over_radius = measure(s) / (dimension(s) == 2 ? radius * radius : radius);
+  return over_radius * profile.at(x * x).value / profile.normalisation() * (1 - 1e-9);
+}
+
+}  // namespace
+
+// Where the box comes near, a sample would tell little, and nothing at all on the skeleton.
+template <class Skeleton, class Sample>
+void SumBounds::add_integral(const BlendField& blend, const Skeleton& s, double distance, int m, const Sample& sample) {
+  if (rho_ < 0.9 * distance) {
+    add(sample(), distance, largest_radius(s), m);
+    return;
+  }
+  unbounded_ = true;
+  log_slope_ = inf;
+  const Profile profile({blend.kernel, blend.degree, blend.kernel_shape}, dimension(s));
+  low_ += least_field(s, profile, center_, rho_, dimension(s) == 2 ? 2 : 3);
+}
+
 void SumBounds::add_inverse(const BlendField& blend) {
   const int n = blend.degree;
   const Vec3d& p = center_;
@@ -153,10 +190,11 @@ void SumBounds::add_inverse(const BlendField& blend) {
   for (const auto& s : blend.points.skeletons)
     add(point_field<all>(s, p, n), distance_to(s, p), largest_radius(s), n - 1);
   for (const auto& s : blend.segments.skeletons)
-    add(segment_field<all>(s, p, n), distance_to(s, p), largest_radius(s), n);
+    add_integral(blend, s, distance_to(s, p), n, [&] { return segment_field<all>(s, p, n); });
   for (const auto& s : blend.triangles.skeletons)
-    add(triangle_field<all>(s, p, n), distance_to(s, p), largest_radius(s), n + 1);
-  for (const auto& s : blend.arcs.skeletons) add(arc_field<all>(s, p, n), distance_to(s, p), largest_radius(s), n);
+    add_integral(blend, s, distance_to(s, p), n + 1, [&] { return triangle_field<all>(s, p, n); });
+  for (const auto& s : blend.arcs.skeletons)
+    add_integral(blend, s, distance_to(s, p), n, [&] { return arc_field<all>(s, p, n); });
   // R(H)^2 times a positive sum of |p - q|^-3, and H moves no faster than p: R changes by its slope times rho at most.
   for (const auto& s : blend.cani_hornus_segments.skeletons) {
     const double f = cani_hornus_field<Derivatives::ScaleInvariant>(s, p).value, d = distance_to(s, p);
@@ -185,10 +223,12 @@ void SumBounds::add_cauchy(const BlendField& blend) {
   constexpr auto all = Derivatives::Second;
   const int n = blend.degree;
   for (const auto& s : blend.points.skeletons) add(point_field<all>(s, p, kernel), lifted(s), largest_radius(s), n - 1);
-  for (const auto& s : blend.segments.skeletons) add(segment_field<all>(s, p, kernel), lifted(s), largest_radius(s), n);
+  for (const auto& s : blend.segments.skeletons)
+    add_integral(blend, s, lifted(s), n, [&] { return segment_field<all>(s, p, kernel); });
   for (const auto& s : blend.triangles.skeletons)
-    add(triangle_field<all>(s, p, kernel), lifted(s), largest_radius(s), n + 1);
-  for (const auto& s : blend.arcs.skeletons) add(arc_field<all>(s, p, kernel), lifted(s), largest_radius(s), n);
+    add_integral(blend, s, lifted(s), n + 1, [&] { return triangle_field<all>(s, p, kernel); });
+  for (const auto& s : blend.arcs.skeletons)
+    add_integral(blend, s, lifted(s), n, [&] { return arc_field<all>(s, p, kernel); });
 }
 
 // f changes by rho sup |k'| times the share of the skeleton that the support can hold.

@@ -29,8 +29,6 @@ class SumBounds {
   void add(const Between&);
   /// Sources: the same from one remainder for all of them.
   void add(const SourceSums&);
-  /// What f and S may be off altogether.
-  void add_error(double f, double S);
 
   const Vec3d& center() const { return center_; }
   /// Half the diagonal of the box.
@@ -47,6 +45,8 @@ class SumBounds {
 
  private:
   Interval side(std::size_t i) const;
+  template <class Skeleton, class Sample>
+  void add_integral(const BlendField&, const Skeleton&, double distance, int m, const Sample&);
   void add_inverse(const BlendField&);
   void add_cauchy(const BlendField&);
   void add_compact(const BlendField&);

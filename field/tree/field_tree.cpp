@@ -280,4 +280,18 @@ FieldTree localized(const FieldTree& tree, const Box3& box, std::uint32_t below)
   return restriction(tree, box, below, true);
 }
 
+bool has_near_skeletons(const FieldTree& tree) {
+  return std::any_of(tree.records().begin(), tree.records().end(),
+                     [](const FieldTree::Record& r) { return r.local && r.local->near_count() > 0; });
+}
+
+std::size_t bytes_of(const FieldTree& tree) {
+  double bytes = static_cast<double>(sizeof tree + tree.records().size() * sizeof(FieldTree::Record));
+  for (const FieldTree::Record& r : tree.records()) {
+    bytes += static_cast<double>(r.child_count * sizeof(std::uint32_t));
+    if (r.local) bytes += static_cast<double>(r.local->bytes()) / static_cast<double>(r.local.use_count());
+  }
+  return static_cast<std::size_t>(bytes);
+}
+
 }  // namespace marrow

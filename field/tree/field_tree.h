@@ -60,6 +60,10 @@ X value(const FieldTree&, const Vec3<X>& p, std::uint32_t record = FieldTree::wh
 FieldTree restricted(const FieldTree&, const Box3&, std::uint32_t record = FieldTree::whole);
 /// The same with blends summed as local_blend.h does: to within LocalBlend::relative_error of each.
 FieldTree localized(const FieldTree&, const Box3&, std::uint32_t record = FieldTree::whole);
+/// Whether any of its blends has skeletons too near to be summed so.
+bool has_near_skeletons(const FieldTree&);
+/// Without its nodes.
+std::size_t bytes_of(const FieldTree&);
 
 /// Outside this box the field is below 1. Infinite where no bound is found.
 Box3 surface_bounds(const FieldTree&);
