@@ -45,12 +45,11 @@ double least_distance(const ArcSkeleton& s, const Vec3d& p) {
 }
 double least_distance(const auto& s, const Vec3d& p) { return distance_to(s, p); }
 
-// Over that of the longest part that is kept as it is: a closed form costs about the same for a part as for the whole.
 double size(const TriangleSkeleton& s) {
   const auto& v = s.vertices;
-  return 0.3 * std::max({length(v[1] - v[0]), length(v[2] - v[1]), length(v[0] - v[2])});
+  return std::max({length(v[1] - v[0]), length(v[2] - v[1]), length(v[0] - v[2])});
 }
-double size(const auto& s) { return 0.5 * measure(s); }
+double size(const auto& s) { return measure(s); }
 
 }  // namespace
 
