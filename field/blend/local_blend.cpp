@@ -59,7 +59,7 @@ std::shared_ptr<const LocalBlend> LocalBlend::make(const BlendField& blend, std:
     keep_reaching(from.triangles, blend.kernel_shape, box, rest.triangles);
     keep_reaching(from.arcs, blend.kernel_shape, box, rest.arcs);
   } else {
-    SourceMaker maker(blend, box, relative_error, 1 / static_cast<double>(blend.size()));
+    SourceMaker maker(blend, box, largest_error, 1 / static_cast<double>(blend.size()));
     const auto add_all = [&](const auto& list) {
       for (const auto& s : list.skeletons) maker.add(s);
     };

@@ -17,9 +17,9 @@ namespace marrow {
 /// compact kernel are left out where they are 0. Boxes inside the box share its nodes and add their own. Immutable.
 class LocalBlend {
  public:
-  /// Of f, over itself and over 1, at most; and of grad_S f, over the bound m f tau / distance of each primitive. What
-  /// was measured is below 1e-11.
-  static constexpr double relative_error = 1e-7;
+  /// What each primitive may add to the error of f: this much of its own field, as far as that is below 1; all of them
+  /// together this much again. What was measured is below 1e-11.
+  static constexpr double largest_error = 1e-7;
 
   /// `outer` holds a box around this one, or is null. Null, or `outer` itself, when there is nothing to gain.
   /// `blend` must outlive what is made of it.

@@ -53,14 +53,14 @@ double size(const auto& s) { return measure(s); }
 
 }  // namespace
 
-SourceMaker::SourceMaker(const BlendField& blend, const Box3& box, double relative_error, double share)
+SourceMaker::SourceMaker(const BlendField& blend, const Box3& box, double error, double share)
     : points(kernel_degree(blend.degree, 0)),
       curves(kernel_degree(blend.degree, 1)),
       surfaces(kernel_degree(blend.degree, 2)),
       degree_(blend.degree),
       center_(box.center()),
       rho_(0.5 * length(box.size())),
-      relative_error_(relative_error),
+      error_(error),
       share_(share) {
   const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
   const bool is_cauchy = blend.kernel == KernelFamily::Cauchy;
@@ -82,7 +82,7 @@ SourceMaker::View SourceMaker::seen(double distance, double least_radius) const 
 
 double SourceMaker::allowed(double mass, double radius, double distance, int m) const {
   const double field = mass * integer_power(radius, degree_ - 1) / integer_power(distance, m);
-  return relative_error_ * std::max(1.0, share_ / field);
+  return error_ * std::max(std::min(1.0, field), share_) / field;
 }
 
 void SourceMaker::note(double mass, double radius, double distance, int m, double relative) {

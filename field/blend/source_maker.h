@@ -11,8 +11,8 @@ namespace marrow {
 /// For one box: primitives, or parts of them, go to sources where rules are certified, and to a rest where not.
 class SourceMaker {
  public:
-  /// `share` of the error is what a primitive may add however weak it is.
-  SourceMaker(const BlendField&, const Box3&, double relative_error, double share);
+  /// Each primitive adds at most `error` times its field, where that is between `share` and 1.
+  SourceMaker(const BlendField&, const Box3&, double error, double share);
 
   void add(const PointSkeleton&);
   void add(const SegmentSkeleton&);
@@ -46,7 +46,7 @@ class SourceMaker {
   double per_lift_ = 0;  ///< lift over radius: 1 / scale of the Cauchy kernel; 0 for the inverse one
   double unit_[3];       ///< weight of a unit of measure, by dimension
   Vec3d center_;
-  double rho_, relative_error_, share_;
+  double rho_, error_, share_;
 };
 
 }  // namespace marrow

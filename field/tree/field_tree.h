@@ -58,7 +58,7 @@ X value(const FieldTree&, const Vec3<X>& p, std::uint32_t record = FieldTree::wh
 /// The same field inside a box, with less: nodes that are 0 there are gone, and so are operands that never count.
 /// A tree without records is 0 all over the box.
 FieldTree restricted(const FieldTree&, const Box3&, std::uint32_t record = FieldTree::whole);
-/// The same with blends summed as local_blend.h does: to within LocalBlend::relative_error of each.
+/// The same with blends summed as local_blend.h does, to within its certified error.
 FieldTree localized(const FieldTree&, const Box3&, std::uint32_t record = FieldTree::whole);
 /// Whether any of its blends has skeletons too near to be summed so.
 bool has_near_skeletons(const FieldTree&);
