@@ -109,7 +109,7 @@ BlendBounds LocalBlend::bounds(const Box3& box) const {
 
 std::size_t LocalBlend::near_count() const {
   if (rest_.kernel == KernelFamily::Compact) return 0;
-  return rest_.points.size() + rest_.segments.size() + rest_.triangles.size() + rest_.arcs.size();
+  return rest_.points.size() + rest_.segments.size() + rest_.arcs.size();
 }
 
 std::size_t LocalBlend::source_count() const {

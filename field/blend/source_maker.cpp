@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <optional>
 #include <span>
 #include <utility>
@@ -23,6 +24,9 @@ namespace {
 constexpr double nearest = 0.4;
 // And longer parts than this are cut.
 constexpr double largest = 1;
+// A triangle that is longer than so many of its distances stays a closed form: beside it points would be 10^4 and more,
+// in every box anew.
+constexpr double most_over_distance = 4;
 // Parts of a primitive are halves of halves down to this.
 constexpr int deepest = 12;
 
@@ -183,6 +187,11 @@ bool SourceMaker::add_part(const TriangleSkeleton& s, double distance) {
 template <class Skeleton>
 void SourceMaker::divide(const Skeleton& whole, PrimitiveList<Skeleton>& rest) {
   if (!(measure(whole) > 0)) return;
+  if constexpr (std::same_as<Skeleton, TriangleSkeleton>)
+    if (most_over_distance * seen(least_distance(whole, center_), least_radius(whole)).lifted < size(whole)) {
+      rest.skeletons.push_back(whole);
+      return;
+    }
   std::vector<std::pair<Skeleton, int>> open{{whole, 0}};
   while (!open.empty()) {
     const auto [s, depth] = open.back();
