@@ -1,8 +1,6 @@
 #include "field/blend/blend_bounds.h"
 
-#include "field/blend/alpha_bounds.h"
 #include "field/blend/correction_bounds.h"
-#include "field/blend/sum_bounds.h"
 
 namespace marrow {
 namespace {
@@ -37,7 +35,10 @@ Vec3<Interval> gradient_of(const SumBounds& sum, const PartialBounds& by, const 
 BlendBounds blend_bounds(const BlendField& blend, const Box3& box) {
   if (!is_finite(box.center()) || !is_finite(box.size())) return {{0, inf}, unknown};
   const SumBounds sum(blend, box);
-  const AngleBounds angle = alpha_bounds(blend, sum, box);
+  return blend_bounds(blend, sum, alpha_bounds(blend, sum, box));
+}
+
+BlendBounds blend_bounds(const BlendField& blend, const SumBounds& sum, const AngleBounds& angle) {
   const Interval& alpha = angle.value;
   const Interval f = sum.f();
   if (sum.unbounded()) {

@@ -1,7 +1,9 @@
 // Certified bounds of a blend's corrected field over a box.
 #pragma once
 
+#include "field/blend/alpha_bounds.h"
 #include "field/blend/blend_field.h"
+#include "field/blend/sum_bounds.h"
 #include "field/number/interval.h"
 
 namespace marrow {
@@ -15,6 +17,8 @@ struct BlendBounds {
 /// its least distance: widths shrink with the square of the box for the sums, linearly for the corrected field.
 /// Boxes that reach a skeleton have no upper bound.
 BlendBounds blend_bounds(const BlendField&, const Box3&);
+/// The same from bounds of the sums and of the angle.
+BlendBounds blend_bounds(const BlendField&, const SumBounds&, const AngleBounds&);
 
 /// The box outside which the corrected field is below `level`, or 0 for level = 0: all of space but for the compact
 /// kernel.

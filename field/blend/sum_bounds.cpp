@@ -5,6 +5,7 @@
 
 #include "field/kernel/profile.h"
 #include "field/skeleton/distance.h"
+#include "field/skeleton/parts.h"
 #include "field/skeleton/radii.h"
 #include "field/skeleton/skeletons.h"
 
@@ -14,6 +15,8 @@ namespace {
 constexpr double inf = Box3::inf;
 // Relative error of the closed forms, with a margin of ten.   [field-maths 3.3: 1.2e-13; triangles 2.6e-12]
 constexpr double sample_error = 3e-11;
+// Of integrals under the compact kernel, over what they could be at most.
+constexpr double compact_error = 1e-10;
 
 Interval pad(double x, double by) { return {rounding::down(x - by), rounding::up(x + by)}; }
 
@@ -36,6 +39,13 @@ double steepest(const Profile& profile, const Kernel& kernel) {
   // (m x / R^2) (1 - x^2/R^2)^(m/2-1), largest at x^2 = R^2 / (m - 1); the slope at the support for m = 2
   const double at_top = m > 2 ? pow(1 - 1.0 / (m - 1), 0.5 * m - 1) / std::sqrt(m - 1.0) : 1;
   return m / kernel.shape * at_top / profile.normalisation();
+}
+
+// sup of the second derivatives, over the scaled position, of the normalised compact kernel (1 - x^2/R^2)^h, h = m/2:
+// its derivatives along and across are -2h/R^2 (1-y)^(h-1) and that plus 4h(h-1)/R^2 y (1-y)^(h-2), y = x^2/R^2 <= 1.
+double most_bent(const Profile& profile, const Kernel& kernel) {
+  const double m = profile.degree();
+  return m < 4 ? inf : m * (m - 2) / (kernel.shape * kernel.shape) / profile.normalisation() * (1 + 1e-9);
 }
 
 }  // namespace
@@ -70,6 +80,30 @@ void SumBounds::add(const SkeletonSample& s, double distance, double radius, int
   error_ += sample_error * s.value;
   slope_error_ += sample_error * (m * s.value / distance);
   S_error_ += sample_error * (m * s.value * radius / distance);
+}
+
+// Within rho distances shrink by 1 - rho / nearest at most, and B3 and B4 hold with the sums of the sources.
+void SumBounds::add(const SourceSums& sources) {
+  const SourceSample s = sources.at(center_);
+  const int m = sources.exponent();
+  const double q = rho_ / s.nearest, f = s.sum.value;
+  log_slope_ = std::max(log_slope_, q < 1 ? m / (s.nearest - rho_) * (1 + 1e-12) : inf);
+  // one factor for all of them tells little where one is near
+  low_ += (q < 0.2 ? f / integer_power(1 + q, m) : sources.least_within(center_, rho_)) * (1 - 1e-10);
+  if (!(q < 0.9)) {
+    unbounded_ = true;
+    return;
+  }
+  const double shrink = (1 + 1e-12) / (1 - q), grown = integer_power(shrink, m + 2);
+  f_ += f;
+  gradient_ += s.sum.gradient;
+  S_ += s.sum.si_gradient;
+  J_ += s.sum.si_jacobian;
+  second_ += m * (m + 1) * grown * s.second;
+  S_second_ += m * (m + 1) * (m + 2) * grown * shrink * s.third;
+  error_ += sample_error * f;
+  slope_error_ += sample_error * (m * f / s.nearest);
+  S_error_ += sample_error * (m * f * sources.largest_radius() / s.nearest);
 }
 
 void SumBounds::add(const Between& b) {
@@ -117,6 +151,47 @@ Interval SumBounds::J(std::size_t i, std::size_t j) const {
   return pad(J_.rows[i][j], S_second_ * rho_ + sample_error * std::fabs(J_.rows[i][j]));
 }
 
+namespace {
+
+constexpr int dimension(const TriangleSkeleton&) { return 2; }
+constexpr int dimension(const auto&) { return 1; }
+
+double farthest(const SegmentSkeleton& s, const Vec3d& p) { return std::max(length(p - s.from), length(p - s.to)); }
+double farthest(const ArcSkeleton& s, const Vec3d& p) {
+  return length(p - place_at(s, 0.5 * (s.begin + s.end))) + 0.5 * measure(s);
+}
+double farthest(const TriangleSkeleton& s, const Vec3d& p) {
+  return std::max({length(p - s.vertices[0]), length(p - s.vertices[1]), length(p - s.vertices[2])});
+}
+
+// Of each part the kernel of the largest distance over the least radius, over the largest radius.
+template <class Skeleton>
+double least_field(const Skeleton& s, const Profile& profile, const Vec3d& center, double rho, int cuts) {
+  if (cuts > 0) {
+    double sum = 0;
+    for (const Skeleton& part : parts(s)) sum += least_field(part, profile, center, rho, cuts - 1);
+    return sum;
+  }
+  const double radius = largest_radius(s), x = (farthest(s, center) + rho) / least_radius(s);
+  const double over_radius = measure(s) / (dimension(s) == 2 ? radius * radius : radius);
+  return over_radius * profile.at(x * x).value / profile.normalisation() * (1 - 1e-9);
+}
+
+}  // namespace
+
+// Where the box comes near, a sample would tell little, and nothing at all on the skeleton.
+template <class Skeleton, class Sample>
+void SumBounds::add_integral(const BlendField& blend, const Skeleton& s, double distance, int m, const Sample& sample) {
+  if (rho_ < (dimension(s) == 2 ? 0.7 : 0.9) * distance) {
+    add(sample(), distance, largest_radius(s), m);
+    return;
+  }
+  unbounded_ = true;
+  log_slope_ = inf;
+  const Profile profile({blend.kernel, blend.degree, blend.kernel_shape}, dimension(s));
+  low_ += least_field(s, profile, center_, rho_, dimension(s) == 2 ? 2 : 3);
+}
+
 void SumBounds::add_inverse(const BlendField& blend) {
   const int n = blend.degree;
   const Vec3d& p = center_;
@@ -124,13 +199,15 @@ void SumBounds::add_inverse(const BlendField& blend) {
   for (const auto& s : blend.points.skeletons)
     add(point_field<all>(s, p, n), distance_to(s, p), largest_radius(s), n - 1);
   for (const auto& s : blend.segments.skeletons)
-    add(segment_field<all>(s, p, n), distance_to(s, p), largest_radius(s), n);
+    add_integral(blend, s, distance_to(s, p), n, [&] { return segment_field<all>(s, p, n); });
   for (const auto& s : blend.triangles.skeletons)
-    add(triangle_field<all>(s, p, n), distance_to(s, p), largest_radius(s), n + 1);
-  for (const auto& s : blend.arcs.skeletons) add(arc_field<all>(s, p, n), distance_to(s, p), largest_radius(s), n);
+    add_integral(blend, s, distance_to(s, p), n + 1, [&] { return triangle_field<all>(s, p, n); });
+  for (const auto& s : blend.arcs.skeletons)
+    add_integral(blend, s, distance_to(s, p), n, [&] { return arc_field<all>(s, p, n); });
   // R(H)^2 times a positive sum of |p - q|^-3, and H moves no faster than p: R changes by its slope times rho at most.
   for (const auto& s : blend.cani_hornus_segments.skeletons) {
-    const double f = cani_hornus_field<Derivatives::ScaleInvariant>(s, p).value, d = distance_to(s, p);
+    const SkeletonSample sample = cani_hornus_field<Derivatives::ScaleInvariant>(s, p);
+    const double f = sample.value, d = distance_to(s, p);
     if (!(d > rho_) || !std::isfinite(f)) {
       add({.f = {0, inf}, .S_by = inf, .log_slope = inf});
       continue;
@@ -138,9 +215,15 @@ void SumBounds::add_inverse(const BlendField& blend) {
     const double slope = std::fabs(s.radius_to - s.radius_from) / length(s.to - s.from), q = rho_ / d;
     const double wider = std::min(1 + slope * rho_ / least_radius(s), largest_radius(s) / least_radius(s)) * (1 + 1e-9);
     const double high = f * wider * wider / integer_power(1 - q, 3);
-    // |grad_S f| = R^3 |grad I| <= 3 R f / d
+    // S = R^3 grad I, and |grad^2 I| <= 12 I / d^2
+    const double R = largest_radius(s), grown = wider * wider * wider;
+    const double by = (grown - 1) * length(sample.si_gradient) +
+                      12 * R * grown * f * rho_ / (integer_power(1 - q, 5) * d * d) + sample_error * R * f / d;
+    const double longest = 3 * R * high / (d - rho_);
+    const bool is_near = !(by < longest);
     add({.f = {f / (wider * wider * integer_power(1 + q, 3)), high},
-         .S_by = 3 * largest_radius(s) * high / (d - rho_) * (1 + 1e-9),
+         .S = is_near ? Vec3d{} : sample.si_gradient,
+         .S_by = std::min(longest, by) * (1 + 1e-9),
          .log_slope = (3 / (d - rho_) + 2 * slope / least_radius(s)) * (1 + 1e-9)});
   }
 }
@@ -156,10 +239,12 @@ void SumBounds::add_cauchy(const BlendField& blend) {
   constexpr auto all = Derivatives::Second;
   const int n = blend.degree;
   for (const auto& s : blend.points.skeletons) add(point_field<all>(s, p, kernel), lifted(s), largest_radius(s), n - 1);
-  for (const auto& s : blend.segments.skeletons) add(segment_field<all>(s, p, kernel), lifted(s), largest_radius(s), n);
+  for (const auto& s : blend.segments.skeletons)
+    add_integral(blend, s, lifted(s), n, [&] { return segment_field<all>(s, p, kernel); });
   for (const auto& s : blend.triangles.skeletons)
-    add(triangle_field<all>(s, p, kernel), lifted(s), largest_radius(s), n + 1);
-  for (const auto& s : blend.arcs.skeletons) add(arc_field<all>(s, p, kernel), lifted(s), largest_radius(s), n);
+    add_integral(blend, s, lifted(s), n + 1, [&] { return triangle_field<all>(s, p, kernel); });
+  for (const auto& s : blend.arcs.skeletons)
+    add_integral(blend, s, lifted(s), n, [&] { return arc_field<all>(s, p, kernel); });
 }
 
 // f changes by rho sup |k'| times the share of the skeleton that the support can hold.
@@ -167,13 +252,20 @@ void SumBounds::add_compact(const BlendField& blend) {
   const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
   const auto all = [&](const auto& skeletons, int dimension, const auto& field) {
     const Profile profile(kernel, dimension);
-    const double steep = steepest(profile, kernel);
+    const double steep = steepest(profile, kernel), bent = most_bent(profile, kernel);
     for (const auto& s : skeletons) {
       const double reach = kernel.shape * largest_radius(s);
       if (distance_to(s, center_) > rho_ + reach) continue;
-      const double f = field(s).value, per_length = steep * share(s, reach) / least_radius(s) * (1 + 1e-9);
-      const double by = per_length * rho_ + 1e-10 * f;
-      add({.f = {std::max(0.0, f - by), f + by}, .S_by = per_length * largest_radius(s), .log_slope = inf});
+      const SkeletonSample sample = field(s);
+      const double f = sample.value, per_length = steep * share(s, reach) / least_radius(s) * (1 + 1e-9);
+      const double by = per_length * rho_ + compact_error * f, longest = per_length * largest_radius(s);
+      const double S_by = bent * share(s, reach) * largest_radius(s) / integer_power(least_radius(s), 2) * rho_ +
+                          compact_error * longest;
+      const bool is_near = !(S_by < longest);
+      add({.f = {std::max(0.0, f - by), f + by},
+           .S = is_near ? Vec3d{} : sample.si_gradient,
+           .S_by = std::min(longest, S_by) * (1 + 1e-9),
+           .log_slope = inf});
     }
   };
   constexpr auto value = Derivatives::ScaleInvariant;
@@ -232,7 +324,7 @@ void SumBounds::add_distances(const BlendField& blend) {
   const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
   const auto& list = blend.distance_segments;
   for (std::size_t i = 0; i < list.size();) {
-    // The largest of a strand counts; where several may be that, all that is known of S is its length.
+    // The largest of a strand counts; where several may be that, S is one of theirs.
     Between all = distance_bounds(list.skeletons[i], *this, kernel);
     const std::size_t first = i++;
     for (; !list.strands.empty() && i < list.size() && list.strands[i] == list.strands[first]; ++i) {
@@ -243,7 +335,8 @@ void SumBounds::add_distances(const BlendField& blend) {
         continue;
       }
       all = {.f = max(all.f, other.f),
-             .S_by = std::max(length(all.S) + all.S_by, length(other.S) + other.S_by),
+             .S = (all.S + other.S) * 0.5,
+             .S_by = 0.5 * length(all.S - other.S) + std::max(all.S_by, other.S_by) * (1 + 1e-15),
              .log_slope = std::max(all.log_slope, other.log_slope)};
     }
     add(all);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "field/blend/blend_field.h"
+#include "field/blend/source_sums.h"
 #include "field/math/box3.h"
 #include "field/number/interval.h"
 
@@ -26,6 +27,8 @@ class SumBounds {
     double log_slope;  ///< of |grad ln f|
   };
   void add(const Between&);
+  /// Sources: the same from one remainder for all of them.
+  void add(const SourceSums&);
 
   const Vec3d& center() const { return center_; }
   /// Half the diagonal of the box.
@@ -42,6 +45,8 @@ class SumBounds {
 
  private:
   Interval side(std::size_t i) const;
+  template <class Skeleton, class Sample>
+  void add_integral(const BlendField&, const Skeleton&, double distance, int m, const Sample&);
   void add_inverse(const BlendField&);
   void add_cauchy(const BlendField&);
   void add_compact(const BlendField&);

@@ -1,9 +1,9 @@
 #include "field/trace/crossing.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace marrow {
 namespace {
@@ -14,28 +14,20 @@ using OnRay = Jet<Interval, 1>;
 constexpr std::uint32_t most_evaluations = 2000;
 constexpr double inf = std::numeric_limits<double>::infinity();
 
+enum class Side { Unknown, Outside, Inside };
+
 class Search {
  public:
   Search(const FieldTree& tree, std::uint32_t record, const Ray& ray, bool any)
       : tree_(tree), record_(record), ray_(ray), any_(any) {}
 
   CrossingSearch run(double begin, double end) {
-    const bool starts_inside = inside(begin), ends_inside = inside(end);
-    if (any_ && starts_inside != ends_inside) {
-      found_.t = end;
-      return found_;
-    }
-    // Halves still to be searched, nearest last; each knows the side of both of its ends.
-    std::array<Piece, 80> open;
-    std::size_t count = 0;
-    open[count++] = {begin, end, starts_inside, ends_inside};
-    while (count > 0 && !found_.t) {
-      const Piece piece = open[--count];
-      if (const auto middle = examine(piece)) {
-        const bool middle_inside = inside(*middle);
-        open[count++] = {*middle, piece.end, middle_inside, piece.ends_inside};
-        open[count++] = {piece.begin, *middle, piece.starts_inside, middle_inside};
-      }
+    // Pieces still to be searched, nearest last.
+    open_.push_back({begin, end, Side::Unknown, Side::Unknown});
+    while (!open_.empty() && !found_.t) {
+      const Piece piece = open_.back();
+      open_.pop_back();
+      examine(piece);
     }
     // A gap that ends at the crossing is the crossing itself, as exactly as sums are known.
     if (found_.t && *found_.t - found_.undecided <= 16 * gap(*found_.t)) found_.undecided = inf;
@@ -45,14 +37,20 @@ class Search {
  private:
   struct Piece {
     double begin, end;
-    bool starts_inside, ends_inside;
+    Side at_begin, at_end;
+
+    bool crosses() const { return at_begin != at_end; }
   };
 
   double at(double t) {
     ++found_.evaluations;
     return value(tree_, ray_.at(t), record_);
   }
-  bool inside(double t) { return at(t) >= 1; }
+  Side side(double t) { return at(t) >= 1 ? Side::Inside : Side::Outside; }
+  void learn_sides(Piece& piece) {
+    if (piece.at_begin == Side::Unknown) piece.at_begin = side(piece.begin);
+    if (piece.at_end == Side::Unknown) piece.at_end = side(piece.end);
+  }
 
   OnRay enclosure(const Interval& t) {
     ++found_.evaluations;
@@ -64,32 +62,67 @@ class Search {
         Vec3<OnRay>{OnRay(o.x) + along * OnRay(d.x), OnRay(o.y) + along * OnRay(d.y), OnRay(o.z) + along * OnRay(d.z)},
         record_);
   }
+  Interval enclosure_at(double t) {
+    ++found_.evaluations;
+    const Interval s(t);
+    const Vec3d& o = ray_.origin;
+    const Vec3d& d = ray_.direction;
+    return value(tree_,
+                 Vec3<Interval>{Interval(o.x) + s * Interval(d.x), Interval(o.y) + s * Interval(d.y),
+                                Interval(o.z) + s * Interval(d.z)},
+                 record_);
+  }
 
-  // Where to divide the piece, or nothing when it is settled.
-  std::optional<double> examine(const Piece& piece) {
+  // Settles the piece, or puts back what remains of it.
+  void examine(Piece piece) {
     const OnRay f = enclosure({piece.begin, piece.end});
-    if (!f.value.contains(1)) return {};
-    const double middle = piece.begin + 0.5 * (piece.end - piece.begin);
+    if (!f.value.contains(1)) return;
     const Interval slope = f.slope[0];
-    if (std::isfinite(slope.lo) && std::isfinite(slope.hi)) {
-      // The field moves from its value in the middle by no more than its slope allows.
-      const Interval center = enclosure({middle, middle}).value;
-      const Interval moved = center + slope * (Interval(piece.begin, piece.end) - Interval(middle));
-      if (!moved.contains(1)) return {};
-      if (slope.lo > 0 || slope.hi < 0) {
-        if (piece.starts_inside != piece.ends_inside) found_.t = placed(piece);
-        return {};
+    if (any_) {
+      learn_sides(piece);
+      if (piece.crosses()) {
+        found_.t = piece.end;
+        return;
       }
     }
-    if (!is_short(piece) && found_.evaluations < most_evaluations) return middle;
-    if (!is_short(piece) && piece.starts_inside != piece.ends_inside) {
-      found_.undecided = std::min(found_.undecided, piece.begin);
-      found_.t = placed(piece);
-      return {};
+    const bool known = std::isfinite(slope.lo) && std::isfinite(slope.hi);
+    if (known && (slope.lo > 0 || slope.hi < 0)) {
+      learn_sides(piece);
+      if (piece.crosses()) found_.t = placed(piece);
+      return;
     }
-    if (piece.starts_inside != piece.ends_inside) found_.t = piece.end;
-    else found_.undecided = std::min(found_.undecided, piece.begin);
-    return {};
+    if (is_short(piece) || found_.evaluations >= most_evaluations) {
+      give_up(piece);
+      return;
+    }
+    const double middle = piece.begin + 0.5 * (piece.end - piece.begin);
+    if (!known) {
+      split(piece, middle, middle, side(middle));
+      return;
+    }
+    // The field moves from its value in the middle by no more than its slope allows: that clears the middle.
+    const Interval center = enclosure_at(middle);
+    if (center.contains(1)) {
+      split(piece, middle, middle, side(middle));
+      return;
+    }
+    const bool is_above = center.lo > 1;
+    const double margin = (is_above ? center.lo - 1 : 1 - center.hi) * (1 - 1e-12);
+    const double ahead = is_above ? -slope.lo : slope.hi, back = is_above ? slope.hi : -slope.lo;
+    const auto reach = [&](double steepness) { return steepness > 0 ? margin / steepness * (1 - 1e-12) : inf; };
+    split(piece, middle - reach(back), middle + reach(ahead), is_above ? Side::Inside : Side::Outside);
+  }
+
+  // Leaves what is before `left` and behind `right`; there and between the field is on one side.
+  void split(const Piece& piece, double left, double right, Side between) {
+    if (right < piece.end) open_.push_back({right, piece.end, between, piece.at_end});
+    if (left > piece.begin) open_.push_back({piece.begin, left, piece.at_begin, between});
+  }
+
+  void give_up(Piece piece) {
+    learn_sides(piece);
+    if (!piece.crosses() || !is_short(piece)) found_.undecided = std::min(found_.undecided, piece.begin);
+    if (piece.crosses()) found_.t = is_short(piece) ? piece.end : placed(piece);
   }
 
   // Of t, or of the coordinates that the ray runs through.
@@ -109,7 +142,7 @@ class Search {
       if (!(t > a && t < b)) t = a + 0.5 * (b - a);
       if (!(t > a && t < b)) break;
       const double ft = at(t) - 1;
-      if ((ft >= 0) == piece.starts_inside) {
+      if ((ft >= 0) == (piece.at_begin == Side::Inside)) {
         a = t, fa = ft;
         if (stays < 0) fb *= 0.5;
         stays = -1;
@@ -126,6 +159,7 @@ class Search {
   std::uint32_t record_;
   const Ray& ray_;
   bool any_;
+  std::vector<Piece> open_;
   CrossingSearch found_;
 };
 

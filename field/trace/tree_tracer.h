@@ -2,10 +2,11 @@
 //
 // Each member of a crisp union is traced by itself: the nearest hit of all is that of the union, seen from outside. For
 // each of them there is an octree over the box that can hold its surface: parts that bounds prove to be all outside or
-// all inside are dropped, the others are divided until the surface in them is one sheet to all appearances. Each cell
-// keeps the tree restricted to it. Of a union of very many, a member without operators is one cell. Along a ray,
-// enclosures of the field and of its slope tell intervals without a root from those with exactly one; what remains is
-// halved.   [interval Newton isolation: Moore 1966; pruned programs: Keeter 2020]
+// all inside are dropped, the others are divided, when rays come, until the surface in them is one sheet to all
+// appearances. Each cell keeps the tree restricted to it. Of a union of very many, a member without operators is one
+// cell. Along a ray, enclosures of the field and of its slope tell intervals without a root from those with exactly
+// one; what remains is divided around its middle.   [interval Newton isolation: Moore 1966; pruned programs: Keeter
+// 2020]
 #pragma once
 
 #include <cstddef>
@@ -17,11 +18,17 @@
 #include "field/base/result.h"
 #include "field/math/ray.h"
 #include "field/trace/blend_tracer.h"
+#include "field/trace/tree_cell.h"
 #include "field/tree/field_tree.h"
 
 namespace marrow {
 
-/// Immutable; safe to use from many threads.
+struct TreeHit {
+  double t = 0;
+  const TreeCell* cell = nullptr;  ///< that it was found in, if any
+};
+
+/// Safe to use from many threads.
 class TreeTracer {
  public:
   /// Errors: a field whose surface is not bounded, or may be anywhere.
@@ -33,7 +40,7 @@ class TreeTracer {
   /// The first crossing of the surface, from either side, inside a cell with t in [ray.t_min, ray.t_max]; t does not
   /// depend on ray.t_max. With `any`, any crossing. `undecided` of the log: a gap of 2^-34 of t, without a change of
   /// side from end to end, in which no bound excludes a touch.
-  std::optional<CellHit> first_hit(std::size_t cell, const Ray&, bool any, CellLog&) const;
+  std::optional<TreeHit> first_hit(std::size_t cell, const Ray&, bool any, CellLog&) const;
   SurfacePoint surface_at(std::size_t cell, const Vec3d& position) const;
 
   const FieldTree& tree() const { return tree_; }
@@ -47,8 +54,7 @@ class TreeTracer {
   struct Cell {
     Box3 box;
     std::uint32_t member;  ///< record of the whole tree
-    /// Equal to the member in the box and a little beyond; may serve several cells. Null: the member itself.
-    std::shared_ptr<const FieldTree> tree;
+    const TreeCell* part;  ///< equal to the member in the box and a little beyond; null: the member itself
   };
   explicit TreeTracer(FieldTree tree) : tree_(std::move(tree)) {}
   void divide(const Member&);
@@ -57,6 +63,7 @@ class TreeTracer {
 
   FieldTree tree_;
   Box3 bounds_;
+  std::vector<std::unique_ptr<const TreeCell>> roots_;
   std::vector<Cell> cells_;
 };
 

@@ -3,6 +3,7 @@
 
 #include "field/blend/blend_bounds.h"
 #include "field/blend/blend_field.h"
+#include "field/blend/local_blend.h"
 #include "field/number/functions.h"
 
 namespace marrow::tree {
@@ -35,6 +36,23 @@ inline Interval blend_value(const BlendField& blend, const Vec3<Interval>& p) {
 template <std::size_t N>
 Jet<Interval, N> blend_value(const BlendField& blend, const Vec3<Jet<Interval, N>>& p) {
   const BlendBounds b = blend_bounds(blend, box_of({p.x.value, p.y.value, p.z.value}));
+  return composed(b.value, b.gradient, p);
+}
+
+/// The same of a part of space.
+inline double blend_value(const LocalBlend& blend, const Vec3d& p) { return blend.value(p); }
+
+template <std::size_t N>
+Jet<double, N> blend_value(const LocalBlend& blend, const Vec3<Jet<double, N>>& p) {
+  const LocalBlend::Sample s = blend.evaluate({p.x.value, p.y.value, p.z.value});
+  return composed(s.value, s.gradient, p);
+}
+
+inline Interval blend_value(const LocalBlend& blend, const Vec3<Interval>& p) { return blend.bounds(box_of(p)).value; }
+
+template <std::size_t N>
+Jet<Interval, N> blend_value(const LocalBlend& blend, const Vec3<Jet<Interval, N>>& p) {
+  const BlendBounds b = blend.bounds(box_of({p.x.value, p.y.value, p.z.value}));
   return composed(b.value, b.gradient, p);
 }
 

@@ -132,7 +132,7 @@ struct Part {
 
 class Restriction {
  public:
-  explicit Restriction(const FieldTree& tree) : tree_(tree) {}
+  Restriction(const FieldTree& tree, bool with_local_blends) : tree_(tree), with_local_blends_(with_local_blends) {}
 
   Part add(std::uint32_t index, const Vec3<Interval>& p, std::span<const Part> children) {
     const FieldTree::Record& old = tree_.records()[index];
@@ -142,13 +142,15 @@ class Restriction {
     if (kept_.empty() && old.child_count > 0) return {};
     values_.clear();
     for (const Part& c : kept_) values_.push_back(c.value);
-    const Interval v = tree::value_of_node<Interval>(node, p, values_);
-    if (v == Interval(0)) return {};
     FieldTree::Record made = old;
+    if (const auto* blend = std::get_if<BlendLeaf>(&node); blend != nullptr && with_local_blends_)
+      made.local = LocalBlend::make(*blend->field, old.local, tree::box_of(p));
+    const Interval v = tree::value_of_record<Interval>(tree_, made, p, values_);
+    if (v == Interval(0)) return {};
     made.first_child = static_cast<std::uint32_t>(children_.size());
     made.child_count = static_cast<std::uint32_t>(kept_.size());
     for (const Part& c : kept_) children_.push_back(c.record);
-    records_.push_back(made);
+    records_.push_back(std::move(made));
     return {v, static_cast<std::uint32_t>(records_.size() - 1)};
   }
 
@@ -249,6 +251,7 @@ class Restriction {
   static std::size_t index_of_union() { return 0; }
 
   const FieldTree& tree_;
+  bool with_local_blends_;
   std::vector<FieldTree::Record> records_;
   std::vector<std::uint32_t> children_;
   std::vector<Part> kept_;
@@ -256,17 +259,39 @@ class Restriction {
   std::uint32_t zero_ = Part::none;
 };
 
-}  // namespace
-
-FieldTree restricted(const FieldTree& tree, const Box3& box, std::uint32_t below) {
+FieldTree restriction(const FieldTree& tree, const Box3& box, std::uint32_t below, bool with_local_blends) {
   const Vec3<Interval> p{{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
-  Restriction restriction(tree);
+  Restriction restriction(tree, with_local_blends);
   tree::Machine<Interval, Part> machine;
   const Part root = machine.run(tree, below, p, Part{},
                                 [&](std::uint32_t record, const Vec3<Interval>& at, std::span<const Part> children) {
                                   return restriction.add(record, at, children);
                                 });
   return std::move(restriction).tree(root.record);
+}
+
+}  // namespace
+
+FieldTree restricted(const FieldTree& tree, const Box3& box, std::uint32_t below) {
+  return restriction(tree, box, below, false);
+}
+
+FieldTree localized(const FieldTree& tree, const Box3& box, std::uint32_t below) {
+  return restriction(tree, box, below, true);
+}
+
+bool has_near_skeletons(const FieldTree& tree) {
+  return std::any_of(tree.records().begin(), tree.records().end(),
+                     [](const FieldTree::Record& r) { return r.local && r.local->near_count() > 0; });
+}
+
+std::size_t bytes_of(const FieldTree& tree) {
+  double bytes = static_cast<double>(sizeof tree + tree.records().size() * sizeof(FieldTree::Record));
+  for (const FieldTree::Record& r : tree.records()) {
+    bytes += static_cast<double>(r.child_count * sizeof(std::uint32_t));
+    if (r.local) bytes += static_cast<double>(r.local->bytes()) / static_cast<double>(r.local.use_count());
+  }
+  return static_cast<std::size_t>(bytes);
 }
 
 }  // namespace marrow

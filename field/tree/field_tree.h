@@ -17,6 +17,7 @@ namespace marrow {
 
 /// What a record is; defined in tree_node.h.
 struct TreeNode;
+class LocalBlend;
 
 class FieldTree {
  public:
@@ -24,7 +25,8 @@ class FieldTree {
     std::uint32_t node = 0;  ///< index into nodes
     std::uint32_t first_child = 0, child_count = 0;
     MaterialId material;
-    Box3 support;  ///< in the node's own coordinates; outside, the node is 0
+    Box3 support;                                       ///< in the node's own coordinates; outside, the node is 0
+    std::shared_ptr<const LocalBlend> local = nullptr;  ///< of a blend in a part of space; null: the blend as it is
   };
 
   /// `nodes` may be shared between trees. Preconditions: children of a record stand before it; the last is the root.
@@ -56,6 +58,12 @@ X value(const FieldTree&, const Vec3<X>& p, std::uint32_t record = FieldTree::wh
 /// The same field inside a box, with less: nodes that are 0 there are gone, and so are operands that never count.
 /// A tree without records is 0 all over the box.
 FieldTree restricted(const FieldTree&, const Box3&, std::uint32_t record = FieldTree::whole);
+/// The same with blends summed as local_blend.h does, to within its certified error.
+FieldTree localized(const FieldTree&, const Box3&, std::uint32_t record = FieldTree::whole);
+/// Whether any of its blends has skeletons too near to be summed so.
+bool has_near_skeletons(const FieldTree&);
+/// Without its nodes.
+std::size_t bytes_of(const FieldTree&);
 
 /// Outside this box the field is below 1. Infinite where no bound is found.
 Box3 surface_bounds(const FieldTree&);

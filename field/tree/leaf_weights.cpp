@@ -73,7 +73,7 @@ std::vector<LeafWeight> leaf_weights(const FieldTree& tree, const Vec3d& p, std:
                 for (const std::size_t c : children) values.push_back(c == nothing ? 0 : visits[c].value);
                 visits.push_back({record,
                                   at,
-                                  tree::value_of_node<double>(tree.node(tree.records()[record]), at, values),
+                                  tree::value_of_record<double>(tree, tree.records()[record], at, values),
                                   0,
                                   {children.begin(), children.end()}});
                 return visits.size() - 1;

@@ -41,6 +41,15 @@ X value_of_node(const TreeNode& node, const Vec3<X>& p, std::span<const X> child
       node);
 }
 
+/// The same of a record, whose blend may be summed as the part of space of its tree allows.
+template <Number X>
+X value_of_record(const FieldTree& tree, const FieldTree::Record& record, const Vec3<X>& p,
+                  std::span<const X> children) {
+  if constexpr (requires { blend_value(*record.local, p); })
+    if (record.local) return blend_value(*record.local, p);
+  return value_of_node(tree.node(record), p, children);
+}
+
 template <Number X>
 Vec3<X> point_of_children(const TreeNode& node, const Vec3<X>& p) {
   return std::visit(

@@ -5,7 +5,7 @@ namespace marrow {
 Result<std::unique_ptr<TreeSolid>> TreeSolid::make(FieldTree tree, MaterialId of_object) {
   auto tracer = TreeTracer::make(std::move(tree));
   if (!tracer) return tracer.why();
-  return std::unique_ptr<TreeSolid>(new TreeSolid(*std::move(tracer), of_object));
+  return std::unique_ptr<TreeSolid>(new TreeSolid(std::move(*tracer), of_object));
 }
 
 std::optional<double> TreeSolid::hit(std::size_t element, const Ray& ray, bool any, ElementLog& log) const {

@@ -1,0 +1,59 @@
+// Sums over weighted points, which is what integrals over skeletons become at a distance from them.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "field/skeleton/skeleton_sample.h"
+
+namespace marrow {
+
+/// A point q with f = w D^-m and grad_S f = grad (w tau D^-m), D^2 = |p - q|^2 + lift^2: a node of a rule for the
+/// inverse kernel, or, with a lift of tau / scale, for the Cauchy kernel.
+struct Source {
+  Vec3d at;
+  double weight = 0, radius = 0, lift_squared = 0;
+};
+
+/// Sums and what bounds their remainders.   [tracing 3.1, B3 and B4]
+struct SourceSample {
+  SkeletonSample sum;
+  double second = 0;                                         ///< sum w D^-(m+2)
+  double third = 0;                                          ///< sum w tau D^-(m+3)
+  double nearest = std::numeric_limits<double>::infinity();  ///< least D
+};
+
+/// Sources of one exponent m. The same bits on every instruction set.
+class SourceSums {
+ public:
+  /// Precondition: exponent >= 2.
+  explicit SourceSums(int exponent) : exponent_(exponent) {}
+
+  void add(const Source&);
+  int exponent() const { return exponent_; }
+  std::size_t count() const { return count_; }
+  bool empty() const { return count_ == 0; }
+  double largest_radius() const { return largest_radius_; }
+  std::size_t bytes() const { return groups_.capacity() * sizeof(Group); }
+
+  /// All of it at p.
+  SourceSample at(const Vec3d& p) const;
+  /// Only value and si_gradient.
+  SkeletonSample value_at(const Vec3d& p) const;
+  /// A lower bound of the value within rho of p.
+  double least_within(const Vec3d& p, double rho) const;
+
+  static constexpr int lanes = 8;
+  struct alignas(64) Group {
+    double x[lanes], y[lanes], z[lanes], weight[lanes], radius[lanes], lift_squared[lanes];
+  };
+
+ private:
+  int exponent_;
+  std::size_t count_ = 0;
+  double largest_radius_ = 0;
+  std::vector<Group> groups_;
+};
+
+}  // namespace marrow
