@@ -10,6 +10,8 @@ namespace {
 #include "field/trace/kernels/far_on_ray.h"
 #include "field/trace/kernels/iso.h"
 #include "field/trace/kernels/strands.h"
+#include "field/trace/kernels/sample.h"
+#include "field/trace/kernels/varied_angle.h"
 #include "field/trace/kernels/march.h"
 #include "field/trace/kernels/search.h"
 #include "field/trace/kernels/walk.h"

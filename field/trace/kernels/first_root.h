@@ -1,8 +1,9 @@
 // The first root in a block: stretch by stretch along the ray. Part of block_kernels_<set>.cpp.
 
 // The coarse level finds where to look, the fine level decides.
+template <bool Varied>
 inline Root root_in(const BlockView& block, const LocalRay& ray, float t0, float t1, bool any) {
-  Marcher march(block, block.coarse(), ray);
+  Marcher<Varied> march(block, block.coarse(), ray);
   Search search(march, t0, t1);
   Root root;
   float guess = t0;
@@ -15,7 +16,7 @@ inline Root root_in(const BlockView& block, const LocalRay& ray, float t0, float
     root.t = search.inside.t;
     return root;
   }
-  Marcher fine(block, block.fine(), ray);
+  Marcher<Varied> fine(block, block.fine(), ray);
   Search close(fine, search.front, t1);
   root = decide(close, min_of(max_of(guess, search.front), t1), any);
   root.evaluations = march.evaluations + fine.evaluations;
@@ -24,8 +25,9 @@ inline Root root_in(const BlockView& block, const LocalRay& ray, float t0, float
 }
 
 // Where a ray leaves that is inside at t0.
+template <bool Varied>
 inline Root exit_in(const BlockView& block, const LocalRay& ray, float t0, float t1, bool any) {
-  Marcher march(block, block.fine(), ray);
+  Marcher<Varied> march(block, block.fine(), ray);
   march.exits = true;
   Search search(march, t0, t1);
   search.record(march.sample(t0));
@@ -39,13 +41,14 @@ inline Root exit_in(const BlockView& block, const LocalRay& ray, float t0, float
 inline constexpr float clearly_inside = 2e-5F;
 
 // Whether the ray is inside at t, by the coarse level where that can tell.
+template <bool Varied>
 inline bool is_inside(const BlockView& block, const LocalRay& ray, float t, int& evaluations) {
-  Marcher rough(block, block.coarse(), ray);
-  const Sample p = rough.sample(t);
+  Marcher<Varied> rough(block, block.coarse(), ray);
+  const SampleOf<Varied> p = rough.sample(t);
   ++evaluations;
   if (p.residual > 0) return false;
   if (p.nominal < -clearly_inside && rough.inside_at(p, 0)) return true;
-  Marcher march(block, block.fine(), ray);
+  Marcher<Varied> march(block, block.fine(), ray);
   ++evaluations;
   return march.sample(t).nominal < -clearly_inside;
 }
@@ -112,14 +115,15 @@ class Runs {
   Walk walk_{.begin = {}, .end = {}, .slot = {}, .count = 0};
 };
 
-Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
+template <bool Varied>
+inline Root first_root_of(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
   Root root;
   root.begins_outside = query.from_outside;
   float front = query.t0;
   if (query.from_surface && !query.leaving) {  // too near for the coarse level; one fine certificate leads away
-    Marcher march(block, block.fine(), ray);
+    Marcher<Varied> march(block, block.fine(), ray);
     Search start(march, query.t0, query.t1);
-    const Sample first = march.sample(query.t0);
+    const SampleOf<Varied> first = march.sample(query.t0);
     root.evaluations = march.evaluations;
     root.hit = first.nominal < -clearly_inside;
     root.enters_inside = root.hit && !query.any;
@@ -132,8 +136,8 @@ Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels:
   }
   Runs runs(block, ray, front, query.t1);
   for (Runs::Run run; !root.hit && runs.next(run);) {
-    const Root found = query.leaving ? exit_in(block, ray, run.begin, run.end, query.any)
-                                     : root_in(block, ray, run.begin, run.end, query.any);
+    const Root found = query.leaving ? exit_in<Varied>(block, ray, run.begin, run.end, query.any)
+                                     : root_in<Varied>(block, ray, run.begin, run.end, query.any);
     root.hit = found.hit;
     root.t = found.t;
     root.undecided = min_of(root.undecided, found.undecided);
@@ -141,7 +145,11 @@ Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels:
     root.begins_outside |= found.begins_outside;
     // Any root will do: a ray that begins inside meets one where it leaves.
     if (root.hit && !root.begins_outside && !query.leaving && !query.any)
-      root.enters_inside = is_inside(block, ray, run.begin, root.evaluations);
+      root.enters_inside = is_inside<Varied>(block, ray, run.begin, root.evaluations);
   }
   return root;
+}
+
+Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
+  return block.row_count > 1 ? first_root_of<true>(block, ray, query) : first_root_of<false>(block, ray, query);
 }

@@ -1,38 +1,10 @@
 // Certified steps along a ray with the field of one level of a block. Part of block_kernels_<set>.cpp.
 
-// Rounding of a sum of positive float terms: below 4e-6 relative for up to 2000 sources.
-inline constexpr float rounding = 4e-6F;
-// Coordinates up to 1.7 in float are off by 2^-24 as t, as product and as sum; those of sources by 2^-24.
-inline constexpr float position_rounding = 2e-7F;
-
-// The field at one t, raised by the level's certified error, with what bounds it nearby.
-struct Sample {
-  float t;
-  RaySums s;
-  float y;         // |G|
-  float distance;  // to the nearest source, at most
-  float residual;  // lower V(u) - v of the field raised by the level's errors and by rounding: where it is positive the
-                   // field is surely below 1, and some step from here can be certified
-  float nominal;   // V(u) - v of the field as summed
-  // Where the residual is not positive but the nominal one is, "outside" can still be told to within rounding: by the
-  // nominal curve and unraised sums. What is passed over in that way is reported.
-  bool sure;                 // residual > 0
-  float margin;              // the residual, or the nominal one when not sure
-  float raise;               // factor of f and |G| for what rounding can do
-  float slope;               // derivative of the residual along the ray
-  float v, v_slope, curve;   // v, its derivative along the ray, and V(u) of the field as summed
-  float x_weight, y_weight;  // -d residual / dx, dy
-  // Where alpha varies: its share of the range as summed, how that changes along the ray, and how it bends at most:
-  // infinite when any share may hold. By how much the residual bends with it, and by how much another share may lower
-  // it.
-  float share, share_slope, share_bend, residual_bend, residual_drop;
-};
-
-struct ShareRange {
-  float low, high;
-};
-
+// `Varied`: the angle is that of the place.
+template <bool Varied>
 struct Marcher {
+  using Sample = SampleOf<Varied>;
+
   const BlockView& block;
   const FieldLevel& level;
   const LocalRay& ray;
@@ -62,7 +34,7 @@ struct Marcher {
     const float dy = (p.s.g[0] * p.s.dg[0] + p.s.g[1] * p.s.dg[1] + p.s.g[2] * p.s.dg[2]) / max_of(y, 1e-12F);
     p.raise = 1 + rounding + position_rounding * static_cast<float>(block.degree + 1) / p.distance;
     p.y = y + level.g_error;
-    if (block.row_count > 1) judge_varied(p, probe, y, dy);
+    if constexpr (Varied) angle().judge(p, probe, y, dy);
     else judge(p, y, dy);
     if (!(p.residual == p.residual)) p.residual = p.nominal = -1;  // on a source: infinite field
     p.sure = p.residual > 0;
@@ -82,99 +54,11 @@ struct Marcher {
     p.v = v;
     p.v_slope = turned_v(iso, p.s.df, dy);
     p.curve = curve.value;
-    p.residual_bend = 0;
     p.s.f += level.f_error;
     p.residual = margin_at(iso, p.s.f * p.raise, p.y * p.raise);
   }
 
-  // The same with the angle of the place.
-  [[gnu::noinline]] void judge_varied(Sample& p, const Probe& probe, float y, float dy) const {
-    const ShareRange ends{nominal_margin_at(block, p.s.f, y, 0), nominal_margin_at(block, p.s.f, y, 1)};
-    find_share(p, probe, ends);
-    const IsoValue iso(block, p.share, p.share_slope, p.s.f, y, p.s.df, dy);
-    p.v = iso.v;
-    p.curve = iso.curve;
-    p.nominal = iso.curve - iso.v;
-    p.x_weight = iso.x_weight;
-    p.y_weight = iso.y_weight;
-    p.slope = iso.slope;
-    p.v_slope = iso.v_slope;
-    p.residual_bend = p.share_bend < infinity ? abs_of(iso.share_weight) * p.share_bend : 0;
-    p.residual_drop = max_of(abs_of(p.nominal - ends.low), abs_of(p.nominal - ends.high));
-    p.s.f += level.f_error;
-    p.sure = true;
-    p.residual = varied_margin(p, p.s.f, p.y, shares_until(p, 0));
-  }
-
-  // Where the two ends of the range tell nearly the same of the place, any share may hold.
-  void find_share(Sample& p, const Probe& probe, const ShareRange& ends) const {
-    constexpr float apart = 1.5F;
-    const float least = ends.low, most = ends.high;
-    const bool needed = (level.strands != nullptr || level.angle != nullptr) &&
-                        !(min_of(abs_of(least), abs_of(most)) > apart * abs_of(most - least) && least * most > 0);
-    if (!needed) {
-      p.share = least < most ? 0.0F : 1.0F;  // that at which more is inside
-      p.share_slope = 0;
-      p.share_bend = infinity;
-    } else if (level.angle != nullptr) {
-      find_mean_share(p, probe);
-    } else {
-      const float at[3] = {probe.px[0], probe.py[0], probe.pz[0]};
-      const float along[1][3] = {{ray.direction[0], ray.direction[1], ray.direction[2]}};
-      const ShareValue<1> value = strand_share(level, block.degree, at, along);
-      p.share = value.share;
-      p.share_slope = value.slope[0];
-      p.share_bend = value.bend;
-    }
-  }
-
-  // A / f of angle_field.h. With s the share here, D = A - s f is 0 here: bounds of D (B3 of tracing.md, for A and f)
-  // over f bound how far A / f moves.
-  void find_mean_share(Sample& p, const Probe& probe) const {
-    AngleSums a{};
-    for_each_list(*level.angle, block.degree, AngleSummer{probe, a});
-    RaySums far_part{};
-    FarOnRay{*level.angle, ray}.add(p.t, far_part);
-    const float inverse = 1 / max_of(p.s.f, 1e-20F), n = static_cast<float>(block.degree);
-    p.share = (a.value + far_part.f) * inverse;
-    p.share_slope = (a.slope + far_part.df - p.share * p.s.df) * inverse;
-    const float second = a.second + p.share * p.s.second, far_bend = level.angle->far_bend + p.share * level.far_bend;
-    p.share_bend = (0.5F * n * (n + 1) * second + far_bend) * inverse;
-  }
-
-  // By which the share can be off: by the errors of A and f, and by rounding.
-  float share_error(const Sample& p) const {
-    constexpr float rounded = 1e-5F;
-    if (!p.sure) return 0;
-    if (level.angle == nullptr) return rounded;
-    const float least = p.s.f - 2 * level.f_error;
-    return least > 0 ? (level.angle->f_error + p.share * level.f_error) / least + rounded : 1;
-  }
-
-  // The shares on [t, t + h]. Fields are at most 1 / (1 - q)^n times what they are here, 1 / (1 - q)^(n + 2) their
-  // second derivatives, and of the quotient of such a change and a sum of f, or of products of two, there remains at
-  // most (1 - q)^-(4 n + 2) <= 1 / (1 - (4 n + 2) q).
-  [[gnu::noinline]] ShareRange shares_until(const Sample& p, float h) const {
-    const float left = 1 - static_cast<float>(4 * block.degree + 2) * abs_of(h) / p.distance;
-    if (!(p.share_bend < infinity) || !(left > 0.1F)) return {0, 1};
-    const float move = p.share_slope * h, bend = p.share_bend * h * h, growth = 1 / left,
-                error = share_error(p) * growth;
-    return {p.share + min_of(0, move - bend) * growth - error, p.share + max_of(0, move + bend) * growth + error};
-  }
-
-  // margin(), nominal_margin_at() and nominally_inside() for all shares of a range: C is largest, and least, at its
-  // ends. Not inline: blends of one angle are to keep their registers.
-  [[gnu::noinline]] float varied_margin(const Sample& p, float x, float y, const ShareRange& shares) const {
-    if (!p.sure) return varied_nominal(x, y, shares);
-    return min_of(margin_at(block, x * p.raise, y * p.raise, shares.low),
-                  margin_at(block, x * p.raise, y * p.raise, shares.high));
-  }
-  [[gnu::noinline]] float varied_nominal(float x, float y, const ShareRange& shares) const {
-    return min_of(nominal_margin_at(block, x, y, shares.low), nominal_margin_at(block, x, y, shares.high));
-  }
-  [[gnu::noinline]] bool varied_inside(float x, float y, const ShareRange& shares) const {
-    return nominally_inside(block, x, y, shares.low) && nominally_inside(block, x, y, shares.high);
-  }
+  VariedAngle angle() const { return {block, level, ray}; }
 
   // What is inside takes the part of what is outside. To within rounding: nothing more is claimed of exits.
   static void mirror(Sample& p) {
@@ -241,7 +125,7 @@ struct Marcher {
     }
     const float y_end = root_of(length2) + (p.s.third * series.gradient + level.far_g_bend) * hh + level.g_error;
     const float y_up = max_of(p.y, y_end);
-    if (block.row_count > 1) return varied_margin(p, max_of(p.s.f, x_end), y_up, shares_until(p, h)) > 0;
+    if constexpr (Varied) return angle().margin(p, max_of(p.s.f, x_end), y_up, angle().shares_until(p, h)) > 0;
     if (!(margin(p, max_of(p.s.f, x_end), y_up) > 0)) return false;
     if (!block.iso.two_sided) return true;
     const float x_low = min_of(p.s.f, p.s.f + p.s.df * h - bend) * (1 - rounding) - 2 * level.f_error;
@@ -264,7 +148,7 @@ struct Marcher {
     const float y = root_of(length2) - (p.s.third * series.gradient + level.far_g_bend) * hh - level.g_error;
     float x = x_high - 2 * bend - 2 * level.f_error;
     if (!(x > 0) || !(y > 0)) return false;
-    if (block.row_count > 1) return varied_inside(x, y, shares_until(p, h));
+    if constexpr (Varied) return angle().inside(x, y, angle().shares_until(p, h));
     if (block.iso.two_sided) x = max_of(x, min_of(x_high, block.iso.peak_x));
     return curve_at(block.iso, turned_u(block.iso, x, y)).value < turned_v(block.iso, x, y);
   }
@@ -281,7 +165,7 @@ struct Marcher {
     const float y_end = along / max_of(p.y, 1e-12F) - (p.s.third * series.gradient + level.far_g_bend) * hh;
     const float y = max_of(0, min_of(p.y, y_end)), x_end = p.s.f + p.s.df * h;
     float x = max_of(0, min_of(p.s.f, x_end - bend));
-    if (block.row_count > 1) return varied_inside(x, y, shares_until(p, h));
+    if constexpr (Varied) return angle().inside(x, y, angle().shares_until(p, h));
     if (block.iso.two_sided) x = max_of(x, min_of(max_of(p.s.f, x_end + bend), block.iso.peak_x));
     return nominally_inside(block.iso, x, y);
   }
@@ -297,7 +181,7 @@ struct Marcher {
       length2 += end * end;
     }
     const float y = root_of(length2) + (p.s.third * series.gradient + level.far_g_bend) * hh, x = p.s.f + p.s.df * h;
-    if (block.row_count > 1) return varied_nominal(x + bend, y, shares_until(p, h)) > 0;
+    if constexpr (Varied) return angle().nominal(x + bend, y, angle().shares_until(p, h)) > 0;
     return nominal_margin_at(block.iso, x + bend, y) > 0 &&
            (!block.iso.two_sided || nominal_margin_at(block.iso, max_of(0, x - bend), y) > 0);
   }
@@ -332,10 +216,12 @@ struct Marcher {
       return 2 * margin / (b + root_of(max_of(0, b * b + 4 * max_of(bend, 0) * margin)) + 1e-20F);
     };
     float model = step_to_zero(p.margin, c);
-    if (p.residual_bend > 0) {  // or with the worst share
-      const float left = p.margin - p.residual_drop;
-      model = step_to_zero(p.margin, c + p.residual_bend);
-      if (left > 0) model = max_of(model, step_to_zero(left, c));
+    if constexpr (Varied) {
+      if (p.residual_bend > 0) {  // or with the worst share
+        const float left = p.margin - p.residual_drop;
+        model = step_to_zero(p.margin, c + p.residual_bend);
+        if (left > 0) model = max_of(model, step_to_zero(left, c));
+      }
     }
     if (model > 0.8F * most && stays_until(p, sign * most)) return most;
     // Short steps end where the model does; long ones before, because their remainder grows faster than the model.

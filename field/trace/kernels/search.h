@@ -7,14 +7,18 @@ struct Doubt {
 
 // `front` is the end of the stretch from t0 that is certified outside; islands are certified stretches beyond it,
 // nearest on top; `inside` is the nearest sample known not to be outside.
+template <bool Varied>
 struct Search {
+  using Sample = SampleOf<Varied>;
+  using Scaled = typename Marcher<Varied>::Scaled;
+
   // Bisection halves the first gap before it adds an island: down to shortest_gap that is some 20 on top of the others.
   static constexpr int most_islands = 40;
   struct Island {
     float begin, end;
     Sample sample;
   };
-  Marcher& march;
+  Marcher<Varied>& march;
   float front, end;
   bool have_last = false, have_inside = false;
   bool exact;                  // the level is the field itself: it tells what is inside
@@ -24,7 +28,7 @@ struct Search {
   Island islands[most_islands];
   int island_count = 0;
 
-  Search(Marcher& m, float t0, float t1)
+  Search(Marcher<Varied>& m, float t0, float t1)
       : march(m), front(t0), end(t1), exact(!(m.level.f_error > 0) && !(m.level.g_error > 0)) {}
 
   bool missed() const { return !have_inside && front >= end; }
@@ -84,7 +88,7 @@ struct Search {
   // Where the field as summed, without the level's errors, reaches 1: by the samples at the two ends of the first gap.
   // NaN-free; may lie outside the gap.
   float estimated_root() const {
-    Marcher::Scaled before{}, behind{};
+    Scaled before{}, behind{};
     if (have_last) before = march.scaled(last);
     if (bracketed()) behind = march.scaled(inside);
     const bool from_last = before.slope < 0, from_inside = behind.slope < 0;
@@ -95,7 +99,7 @@ struct Search {
   }
 
   // The root of the cubic that meets the scaled values and slopes of both samples.
-  float hermite_root(const Marcher::Scaled& before, const Marcher::Scaled& behind) const {
+  float hermite_root(const Scaled& before, const Scaled& behind) const {
     const float h = inside.t - last.t, p0 = before.value, p1 = behind.value;
     const float d0 = before.slope * h, d1 = behind.slope * h;
     float u = p0 / max_of(p0 - p1, 1e-20F);
@@ -127,7 +131,7 @@ struct Search {
   // third order, is exact to float.
   bool pinned(float& root) const {
     if (!have_last) return false;
-    const Marcher::Scaled scaled = march.scaled(last);
+    const Scaled scaled = march.scaled(last);
     const float step = scaled.newton_step(), tolerance = shortest_gap * last.distance;
     root = max_of(front, last.t + step);
     if (!(scaled.slope < 0) || !(step < 1.2e-3F * last.distance)) return false;
@@ -171,11 +175,12 @@ struct Search {
 // certified and `guess` is close to the root.
 enum class Approach { Missed, SurelyInside, Near };
 
-inline Approach approach(Search& s, bool any, float& guess) {
+template <bool Varied>
+inline Approach approach(Search<Varied>& s, bool any, float& guess) {
   constexpr int most_samples = 200;
   float next = 0.5F * (s.front + s.end);
   for (int i = 0; i < most_samples; ++i) {
-    const Sample p = s.march.sample(next);
+    const SampleOf<Varied> p = s.march.sample(next);
     const float before = s.front;
     s.record(p);
     if (s.missed()) return Approach::Missed;
@@ -193,10 +198,11 @@ inline Approach approach(Search& s, bool any, float& guess) {
 }
 
 // The fine level: it decides.
-inline Root decide(Search& s, float guess, bool any) {
+template <bool Varied>
+inline Root decide(Search<Varied>& s, float guess, bool any) {
   Root root;
   for (int samples = 1; !root.hit && !s.missed(); ++samples) {
-    const Sample p = s.march.sample(guess);
+    const SampleOf<Varied> p = s.march.sample(guess);
     const float before = s.front;
     s.record(p);
     if (s.missed()) break;

@@ -1,0 +1,37 @@
+// What a sample of the field tells. Part of block_kernels_<set>.cpp.
+
+// Rounding of a sum of positive float terms: below 4e-6 relative for up to 2000 sources.
+inline constexpr float rounding = 4e-6F;
+// Coordinates up to 1.7 in float are off by 2^-24 as t, as product and as sum; those of sources by 2^-24.
+inline constexpr float position_rounding = 2e-7F;
+
+// Of an angle that varies.
+template <bool Varied>
+struct SampleShare {};
+
+// Its share of the range as summed, how that changes along the ray, and how it bends at most: infinite when any share
+// may hold. By how much the residual bends with it, and by how much another share may lower it.
+template <>
+struct SampleShare<true> {
+  float share, share_slope, share_bend, residual_bend, residual_drop;
+};
+
+// The field at one t, raised by the level's certified error, with what bounds it nearby.
+template <bool Varied>
+struct SampleOf : SampleShare<Varied> {
+  float t;
+  RaySums s;
+  float y;         // |G|
+  float distance;  // to the nearest source, at most
+  float residual;  // lower V(u) - v of the field raised by the level's errors and by rounding: where it is positive the
+                   // field is surely below 1, and some step from here can be certified
+  float nominal;   // V(u) - v of the field as summed
+  // Where the residual is not positive but the nominal one is, "outside" can still be told to within rounding: by the
+  // nominal curve and unraised sums. What is passed over in that way is reported.
+  bool sure;                 // residual > 0
+  float margin;              // the residual, or the nominal one when not sure
+  float raise;               // factor of f and |G| for what rounding can do
+  float slope;               // derivative of the residual along the ray
+  float v, v_slope, curve;   // v, its derivative along the ray, and V(u) of the field as summed
+  float x_weight, y_weight;  // -d residual / dx, dy
+};
