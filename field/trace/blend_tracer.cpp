@@ -39,7 +39,9 @@ double margin_of_shares(const PointField& f, const Vec3d& normal, double step, c
   if (!(left > 0.1) || !(f.share_bend < std::numeric_limits<float>::infinity()))
     return std::min(iso.margin(x, y, 0), iso.margin(x, y, 1));
   const double move = dot(vec(f.share_gradient), normal) * step, bend = f.share_bend * step * step;
-  const double error = 2 * (fine.angle_error + f.share * fine.f_error) / std::max(1e-20F, f.f) + 1e-5;
+  // What strands give is within 1e-4 at 99 of 100 random places (an estimate); else floats are rounded.
+  const double known_to = fine.level.strands != nullptr ? 2e-4 : 1e-5;
+  const double error = 2 * (fine.angle_error + f.share * fine.f_error) / std::max(1e-20F, f.f) + known_to;
   return std::min(iso.margin(x, y, f.share + (std::min(0.0, move - bend) - error) / left),
                   iso.margin(x, y, f.share + (std::max(0.0, move + bend) + error) / left));
 }

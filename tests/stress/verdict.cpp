@@ -76,7 +76,7 @@ void judge_hit(const StressScene& scene, const Ray& ray, const SurfaceHit& hit, 
   const double displacement = std::fabs(exact.corrected - 1) / (slope * distance);
   if (displacement < allowed_displacement) {
     v.largest_displacement = std::max(v.largest_displacement, displacement);
-  } else if (std::fabs(exact.corrected - 1) < grazing_excess) {
+  } else if (std::fabs(exact.corrected - 1) < scene.grazing_excess()) {
     ++v.displaced;
   } else {
     ++v.phantom;
@@ -110,7 +110,7 @@ void judge_free_way(const StressScene& scene, const Ray& ray, double end, bool c
   const double radius = scene.oracle().skeleton_distance(ray.at(*root));
   if (end - *root < std::max(1e-4 * radius, point_size(scene))) return;  // the hit itself
   const double excess = scene.oracle().largest_excess(ray, *root, std::min(end, *root + 4 * radius));
-  if (excess < grazing_excess) {
+  if (excess < scene.grazing_excess()) {
     ++v.grazing;
     return;
   }
@@ -128,7 +128,7 @@ void judge_way_inside(const StressScene& scene, const Ray& ray, double end, bool
                       Verdict& v) {
   if (!(ray.t_min < end)) return;
   const double deficit = scene.oracle().largest_deficit(ray, ray.t_min, end);
-  if (deficit < grazing_excess) return;
+  if (deficit < scene.grazing_excess()) return;
   ++(certified ? v.missed : v.lost);
   note(certified ? v.missed_rays : v.lost_rays, text(scene, ray, family, "an exit missed", deficit));
 }
@@ -208,7 +208,7 @@ void count_crossings(const StressScene& scene, const Ray& line, Random& random, 
   // `ray` met surface at t; the record is that of the ray that met nothing the other way.
   const auto one_way_only = [&](const Ray& ray, double t, const RayRecord& empty_handed) {
     const double depth = depth_after(scene, ray, t);
-    if (depth < grazing_excess) {
+    if (depth < scene.grazing_excess()) {
       ++p.odd_grazing;
       return;
     }
@@ -223,7 +223,7 @@ void count_crossings(const StressScene& scene, const Ray& line, Random& random, 
   const double first = entry->t, last = reach - exit->t;
   for (int i = 0; i < 3; ++i) {
     const double t = random.between(first, last);
-    if (!(scene.oracle().value(line.at(t)) < 1 - grazing_excess)) continue;
+    if (!(scene.oracle().value(line.at(t)) < 1 - scene.grazing_excess())) continue;
     ++p.restarts;
     const Ray onward{line.at(t), line.direction, 0, reach - t}, backward{line.at(t), -line.direction, 0, t};
     if (!scene.surfaces().first_hit(onward, going)) one_way_only(back, exit->t, going);

@@ -12,12 +12,12 @@ namespace marrow::test {
 /// Counts add up; largest values too.
 struct Verdict {
   std::uint64_t rays = 0, hits = 0;
-  /// A stretch inside was skipped, with a corrected field above 1 + grazing_excess on it, and the answer said that
-  /// nothing was.
+  /// A stretch inside was skipped, with a corrected field above 1 + StressScene::grazing_excess() on it, and the answer
+  /// said that nothing was.
   std::uint64_t missed = 0;
   /// The same, but the answer said that a gap before it was not decided.
   std::uint64_t lost = 0;
-  /// A hit off the surface, where the exact field differs from 1 by more than grazing_excess.
+  /// A hit off the surface, where the exact field differs from 1 by more than StressScene::grazing_excess().
   std::uint64_t phantom = 0;
   /// Those of them where it differs by more than far_off.
   std::uint64_t far_phantom = 0;
@@ -29,7 +29,7 @@ struct Verdict {
   /// A hit off the surface by more than allowed_displacement, where the field is so flat that it is nearly 1 all the
   /// same.
   std::uint64_t displaced = 0;
-  /// A stretch inside was skipped, but the field stays below 1 + grazing_excess on it.
+  /// A stretch inside was skipped, but the field stays below 1 + StressScene::grazing_excess() on it.
   std::uint64_t grazing = 0;
   /// A hit at the point of a cone of radius 0.
   std::uint64_t points = 0;
@@ -49,9 +49,6 @@ struct Verdict {
   void add(const Verdict&);
 };
 
-/// A stretch inside counts as missed if the corrected field gets this far above 1 on it: the traced field may differ by
-/// 1e-5 of the radius, times the slope of some n - 1 over a radius.
-inline constexpr double grazing_excess = 1e-5;
 /// No phantom at all may be this far off.
 inline constexpr double far_off = 5e-5;
 /// Allowed distance of a hit from the exact surface, over the distance to the skeleton.
@@ -67,11 +64,12 @@ void judge(const StressScene&, const Ray&, const char* family, bool from_afar, V
 /// the exact field says are outside.
 struct Parity {
   std::uint64_t lines = 0, crossed = 0, restarts = 0;
-  /// One way found surface where the other found none and said that it is certified; more than grazing_excess deep.
+  /// One way found surface where the other found none and said that it is certified; more than
+  /// StressScene::grazing_excess() deep.
   std::uint64_t odd = 0;
   /// The same, but the ray that found none says that a gap was not decided.
   std::uint64_t odd_lost = 0;
-  /// One way found surface that is at most grazing_excess deep.
+  /// One way found surface that is at most StressScene::grazing_excess() deep.
   std::uint64_t odd_grazing = 0;
   std::vector<std::string> odd_rays, lost_rays;
 
