@@ -43,7 +43,7 @@ struct Stage {
         fine(field.degree, budget_of(TraceOptions{}.tolerance, field.degree), kernels),
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
         cells(tree.cells()),
-        context{sources.pieces(),          tree, cutter, coarse, fine, iso, kernels, field.degree, arena,
+        context{sources.pieces(),         tree, cutter, coarse, fine, iso, kernels, field.degree, arena,
                 TraceOptions{}.kept_bytes} {}
 
   Block block(std::size_t cell) const { return Block(context, cells[cell]); }

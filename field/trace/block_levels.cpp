@@ -1,0 +1,76 @@
+#include "field/trace/block_levels.h"
+
+#include <new>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "field/trace/source_emitter.h"
+#include "field/trace/stranded_level.h"
+
+namespace marrow {
+namespace {
+
+// The errors of the coarse level are far above what its polynomials have beyond this degree.
+constexpr int coarse_far_degree = 2;
+
+Level make_level(const Block::Context& context, const NearFar& precision, std::span<const Piece> pieces,
+                 const Surroundings& around, const CellTree::Cell& cell, int far_degree) {
+  SourceEmitter emitter(context.cutter, precision, context.degree, cell.center, cell.half);
+  for (const SourceRef ref : around.near) emitter.emit(pieces[ref.index()]);
+  Level level{std::move(emitter.curves), std::move(emitter.points), around.far, far_degree};
+  level.far.f_error += emitter.f_error;
+  level.far.gradient_error += emitter.gradient_error;
+  truncate(level.far, far_degree);
+  return level;
+}
+
+// The field of angles, at the same errors, from its own tree; nothing where alpha is constant.
+std::optional<Level> make_angle_level(const Block::Context& context, const NearFar& precision,
+                                      const CellTree::Cell& cell, int far_degree) {
+  if (context.angle == nullptr) return {};
+  constexpr double open_all = -1;
+  Surroundings s;
+  s.near = precision.split(*context.angle, context.angle->roots(), cell.center, cell.half, open_all, s.far);
+  return make_level(context, precision, context.angle->pieces(), s, cell, far_degree);
+}
+
+// Whether the errors count wherever "outside" is to be proved, or are only stated.
+enum class Errors { Counted, Stated };
+
+// In one piece of memory: the level, then the field of angles, then what refers to it.
+BlockLevel write_level(const Level& level, const std::optional<Level>& angle, Errors errors, const Allocate& allocate) {
+  const auto floats_of = [](const Level& l) { return (l.floats() + lanes - 1) / lanes * lanes; };
+  constexpr std::size_t reference_floats = (sizeof(FieldLevel) + sizeof(float) - 1) / sizeof(float);
+  const std::size_t own = floats_of(level), second = angle ? floats_of(*angle) : 0;
+  float* const at = allocate(own + second + (angle ? reference_floats : 0));
+  const double counted = errors == Errors::Counted ? 1.0001 : 0;
+  BlockLevel out{
+      .level = write_field(level, at), .f_error = level.far.f_error, .gradient_error = level.far.gradient_error};
+  out.level.f_error = static_cast<float>(counted * out.f_error);
+  out.level.g_error = static_cast<float>(counted * out.gradient_error);
+  if (angle) {
+    auto* const reference = new (at + own + second) FieldLevel(write_field(*angle, at + own));
+    out.angle_error = angle->far.f_error;
+    reference->f_error = static_cast<float>(counted * out.angle_error);
+    out.level.angle = reference;
+  }
+  return out;
+}
+
+}  // namespace
+
+BlockLevel coarse_level(const Block::Context& context, const CellTree::Cell& cell, const Allocate& allocate) {
+  return write_level(make_level(context, context.coarse, context.pieces, context.tree.coarse_surroundings(cell), cell,
+                                coarse_far_degree),
+                     make_angle_level(context, context.coarse, cell, coarse_far_degree), Errors::Counted, allocate);
+}
+
+BlockLevel fine_level(const Block::Context& context, const CellTree::Cell& cell, const Allocate& allocate) {
+  if (context.strands != nullptr) return write_stranded_level(make_stranded_level(context, cell), cell.half, allocate);
+  return write_level(
+      make_level(context, context.fine, context.pieces, context.tree.surroundings(cell), cell, field_degree),
+      make_angle_level(context, context.fine, cell, field_degree), Errors::Stated, allocate);
+}
+
+}  // namespace marrow

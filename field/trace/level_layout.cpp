@@ -1,0 +1,79 @@
+#include "field/trace/level_layout.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace marrow {
+namespace {
+
+// (f, Gx, Gy, Gz) for a monomial, where G = gradient of the potential.
+std::array<double, 4> far_coefficients(const FarField& far, std::size_t i) {
+  const Monomial& m = monomials[i];
+  return {far.f[i], far.potential[monomial_index(m.a + 1, m.b, m.c)] * (m.a + 1),
+          far.potential[monomial_index(m.a, m.b + 1, m.c)] * (m.b + 1),
+          far.potential[monomial_index(m.a, m.b, m.c + 1)] * (m.c + 1)};
+}
+
+void write_far(const FarField& far, std::size_t monomial_count, float* out) {
+  for (std::size_t i = 0; i < monomial_count; ++i)
+    for (const double c : far_coefficients(far, i)) *out++ = static_cast<float>(c);
+}
+
+// The largest first derivative and half of the largest second one along any line in the cube, of f and of G. A monomial
+// in [-1, 1]^3 has a gradient of at most its degree. Its second derivative along a unit vector e is e.A e, |A_ij| at
+// most the sum over monomials of their |second derivatives|, and the largest eigenvalue of a symmetric matrix is at
+// most its largest sum of a row. |G'| and |G''| by the length of those of the components.
+struct FarRange {
+  std::array<float, 4> slope{}, bend{};
+
+  FarRange(const float* far, std::size_t monomial_count) {
+    for (std::size_t k = 0; k < 4; ++k) add(far, monomial_count, k);
+  }
+  void add(const float* far, std::size_t monomial_count, std::size_t k) {
+    std::array<std::array<float, 3>, 3> second{};
+    for (std::size_t i = 1; i < monomial_count; ++i) {
+      const Monomial& m = monomials[i];
+      const int e[3] = {m.a, m.b, m.c};
+      const float c = std::fabs(far[4 * i + k]);
+      slope[k] += static_cast<float>(m.degree()) * c;
+      for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 3; ++column)
+          second[row][column] += static_cast<float>(e[row] * (row == column ? e[row] - 1 : e[column])) * c;
+    }
+    for (const auto& row : second) bend[k] = std::max(bend[k], 0.5001F * (row[0] + row[1] + row[2]));
+  }
+  static float length(const std::array<float, 4>& v) { return std::sqrt(v[1] * v[1] + v[2] * v[2] + v[3] * v[3]); }
+};
+
+}  // namespace
+
+// None of the monomials is above 1 in the cube.
+void truncate(FarField& far, int degree) {
+  for (std::size_t i = monomials_to_degree(degree); i < monomials_to_degree(field_degree); ++i) {
+    const auto c = far_coefficients(far, i);
+    far.f_error += std::fabs(c[0]);
+    far.gradient_error += length({c[1], c[2], c[3]});
+  }
+}
+
+FieldLevel write_field(const Level& level, float* sources) {
+  const auto curve_floats = static_cast<std::size_t>(level.curves.group_count() * floats_per_group);
+  float* const far = sources + level.source_floats();
+  std::copy_n(level.curves.data(), curve_floats, sources);
+  std::copy_n(level.points.data(), level.source_floats() - curve_floats, sources + curve_floats);
+  const std::size_t count = monomials_to_degree(level.far_degree);
+  write_far(level.far, count, far);
+  const FarRange range(far, count);
+  return {.sources = sources,
+          .curve_groups = level.curves.group_count(),
+          .point_groups = level.points.group_count(),
+          .far_degree = level.far_degree,
+          .far = far,
+          .far_slope = range.slope[0],
+          .far_g_slope = FarRange::length(range.slope),
+          .far_bend = range.bend[0],
+          .far_g_bend = FarRange::length(range.bend)};
+}
+
+}  // namespace marrow

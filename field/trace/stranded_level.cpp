@@ -1,0 +1,91 @@
+#include "field/trace/stranded_level.h"
+
+#include <algorithm>
+#include <memory>
+#include <new>
+#include <utility>
+
+#include "field/trace/source_emitter.h"
+#include "field/trace/strand_axes.h"
+
+namespace marrow {
+
+StrandedLevel make_stranded_level(const Block::Context& context, const CellTree::Cell& cell) {
+  const Surroundings around = context.tree.surroundings(cell);
+  const Strands& strands = *context.strands;
+  std::vector<std::uint32_t> near;
+  for (const SourceRef ref : around.near) near.push_back(ref.index());
+  std::sort(near.begin(), near.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(strands.strand_of(a), a) < std::pair(strands.strand_of(b), b);
+  });
+  StrandedLevel out{.level = {.curves = {}, .points = {}, .far = around.far, .far_degree = field_degree},
+                    .seen = strands.around(*cell.tile, cell.center, cell.half, near),
+                    .groups = {},
+                    .directions = {}};
+  SourceEmitter emitter(context.cutter, context.fine, context.degree, cell.center, cell.half);
+  const auto emit = [&](std::uint32_t piece) {
+    emitter.emit(context.pieces[piece]);
+    const Vec3d u = strands.direction(piece);
+    out.directions.resize(static_cast<std::size_t>(emitter.curves.group_count()) * 3 * lanes);
+    for (int lane = out.lanes_told; lane < emitter.curves.count(); ++lane)
+      for (std::size_t k = 0; k < 3; ++k)
+        out.directions[static_cast<std::size_t>(lane / lanes * 3 * lanes + lane % lanes) + k * lanes] =
+            static_cast<float>(u[k]);
+    out.lanes_told = emitter.curves.count();
+  };
+  std::size_t at = 0;
+  std::vector<std::uint32_t> counted;
+  for (const std::uint32_t strand : out.seen.view.near) {
+    for (; at < near.size() && strands.strand_of(near[at]) < strand; ++at) counted.push_back(near[at]);
+    const int before = emitter.curves.group_count();
+    for (; at < near.size() && strands.strand_of(near[at]) == strand; ++at) emit(near[at]);
+    emitter.curves.end_group();
+    out.lanes_told = emitter.curves.count();
+    out.groups.push_back(emitter.curves.group_count() - before);
+  }
+  counted.insert(counted.end(), near.begin() + static_cast<std::ptrdiff_t>(at), near.end());
+  for (const std::uint32_t piece : counted) emit(piece);
+  out.level.curves = std::move(emitter.curves);
+  out.level.points = std::move(emitter.points);
+  out.level.far.f_error += emitter.f_error;
+  out.level.far.gradient_error += emitter.gradient_error;
+  return out;
+}
+
+// The level, then its directions, the far strands, the rests of near ones, the counts of their groups, and what refers
+// to them.
+BlockLevel write_stranded_level(const StrandedLevel& from, double half, const Allocate& allocate) {
+  const auto floats_of = [](std::size_t n) { return (n + lanes - 1) / lanes * lanes; };
+  constexpr std::size_t reference_floats = (sizeof(StrandLevel) + sizeof(float) - 1) / sizeof(float);
+  const CellStrands& seen = from.seen;
+  const std::size_t own = floats_of(from.level.floats()), count = from.groups.size();
+  const std::size_t stride = floats_of(count), row = 4 * stride;
+  float* const at =
+      allocate(own + from.directions.size() + seen.far.size() + quadratic_monomials * row + stride + reference_floats);
+  float* const directions = at + own;
+  float* const far = std::copy(from.directions.begin(), from.directions.end(), directions);
+  float* const rest = std::copy(seen.far.begin(), seen.far.end(), far);
+  std::fill_n(rest, quadratic_monomials * row, 0.0F);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t m = 0; m < quadratic_monomials; ++m)
+      for (std::size_t k = 0; k < 4; ++k) rest[m * row + k * stride + i] = seen.rest[i].sums[4 * m + k];
+  auto* const groups = reinterpret_cast<int*>(rest + quadratic_monomials * row);
+  std::uninitialized_copy(from.groups.begin(), from.groups.end(), groups);
+  auto* const reference = new (rest + quadratic_monomials * row + stride)
+      StrandLevel{.directions = directions,
+                  .groups = groups,
+                  .rest = rest,
+                  .count = static_cast<int>(count),
+                  .far = far,
+                  .axes = strand_axes(),
+                  .far_inverse2 = static_cast<float>(seen.view.far_inverse2 * half * half)};
+  for (int i = 0; i < 3; ++i) reference->far_bend[i] = static_cast<float>(seen.view.far_bend[i] * half * half);
+  BlockLevel out{.level = write_field(from.level, at),
+                 .f_error = from.level.far.f_error,
+                 .gradient_error = from.level.far.gradient_error,
+                 .angle_error = seen.view.error};
+  out.level.strands = reference;
+  return out;
+}
+
+}  // namespace marrow

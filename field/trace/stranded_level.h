@@ -1,0 +1,26 @@
+// The fine level of a block whose angle comes from the directions of strands.
+#pragma once
+
+#include <vector>
+
+#include "field/trace/block.h"
+#include "field/trace/level_layout.h"
+#include "field/trace/strands.h"
+
+namespace marrow {
+
+/// The near pieces strand by strand, each with groups of its own; then what has been counted among the far strands.
+struct StrandedLevel {
+  Level level;
+  CellStrands seen;
+  std::vector<int> groups;        // of each strand of `seen`
+  std::vector<float> directions;  // as StrandLevel::directions
+  int lanes_told = 0;             // of the curves
+};
+
+StrandedLevel make_stranded_level(const Block::Context&, const CellTree::Cell&);
+
+/// `half` is that of the block.
+BlockLevel write_stranded_level(const StrandedLevel&, double half, const Allocate&);
+
+}  // namespace marrow
