@@ -44,15 +44,18 @@ BlockLevel write_level(const Level& level, const std::optional<Level>& angle, Er
   constexpr std::size_t reference_floats = (sizeof(FieldLevel) + sizeof(float) - 1) / sizeof(float);
   const std::size_t own = floats_of(level), second = angle ? floats_of(*angle) : 0;
   float* const at = allocate(own + second + (angle ? reference_floats : 0));
-  const double counted = errors == Errors::Counted ? 1.0001 : 0;
+  // Where no rule is certified, beside the point of a cone, an error may be infinite.
+  const auto counted = [errors](double error) {
+    return static_cast<float>(errors == Errors::Counted ? 1.0001 * error : 0);
+  };
   BlockLevel out{
       .level = write_field(level, at), .f_error = level.far.f_error, .gradient_error = level.far.gradient_error};
-  out.level.f_error = static_cast<float>(counted * out.f_error);
-  out.level.g_error = static_cast<float>(counted * out.gradient_error);
+  out.level.f_error = counted(out.f_error);
+  out.level.g_error = counted(out.gradient_error);
   if (angle) {
     auto* const reference = new (at + own + second) FieldLevel(write_field(*angle, at + own));
     out.angle_error = angle->far.f_error;
-    reference->f_error = static_cast<float>(counted * out.angle_error);
+    reference->f_error = counted(out.angle_error);
     out.level.angle = reference;
   }
   return out;

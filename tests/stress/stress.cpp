@@ -1,6 +1,6 @@
-// stress [--rays N] [--lines N] [--first SCENE] [--scenes N] [--threads N]: hard rays through hard scenes, every one
-// judged. Prints what was counted, and exits 1 if a surface was missed or made up, or a start lies inside. Scene
-// numbers are seeds; the scenes share the rays and the lines evenly.
+// stress [--rays N] [--lines N] [--first SCENE] [--scenes N] [--varied N] [--threads N]: hard rays through hard scenes,
+// every one judged. Prints what was counted, and exits 1 if a surface was missed or made up, or a start lies inside.
+// Scene numbers are seeds; the scenes share the rays and the lines evenly.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -21,7 +21,7 @@ using namespace marrow;
 using namespace marrow::test;
 
 struct Job {
-  std::uint64_t rays = 100'000, lines = 10'000, first = 1, scenes = 100;
+  std::uint64_t rays = 100'000, lines = 10'000, first = 1, scenes = 100, varied = 20;
   std::uint64_t threads = 2;
 };
 
@@ -54,18 +54,17 @@ Outcome run_scene(const Job& job, std::uint64_t number) {
 }
 
 // Not held to 0 yet: rays from the exact surface of limbs that nearly touch (1 of 1.6 10^5 rays was lost, and said so),
-// and hits that are off by more than 4 ulp though sums in float would tell them (in scene 25, degenerate skeletons, 74
-// of 6,409, by up to 13 ulp; elsewhere 1 of 60,000).
-// What 10^6 rays showed, and room for chance: one phantom (nearly touching, 2.4e-5 off), 38 hits (13 of the 125,000
-// rays in scenes of unequal radii) that a limit of the ray just before or behind them moved by more than rounding. An
-// angle that varies is less exact: see README.
+// and single hits that are off by more than 4 ulp though sums in float would tell them (1 of 78,108).
+// What 10^6 rays showed, and room for chance: one phantom (nearly touching, 2.4e-5 off), 16 hits that a limit of the
+// ray just before or behind them moved by more than rounding (thin features and nearly touching sheets).
+// An angle that varies is less exact: see README.
 bool is_held(std::size_t kind, const Verdict& v, const Parity& p) {
   if (v.missed + v.wrong_side > 0 || p.odd + p.odd_lost > 0 || v.lost > v.rays / 10'000) return false;
   const std::size_t off = v.conditioned - v.conditioned_within_4_ulp;
   if (StressScene::has_varied_angle(kind))
     return v.phantom <= v.rays / 1'000 + 1 && v.limits <= v.rays / 100 && off <= v.conditioned / 50 + 1;
-  return v.far_phantom == 0 && v.phantom <= v.rays / 100'000 && v.limits <= v.rays / 5'000 &&
-         off <= v.conditioned / 500 + 1;
+  return v.far_phantom == 0 && v.phantom <= v.rays / 100'000 && v.limits <= v.rays / 10'000 &&
+         off <= v.conditioned / 10'000 + 1;
 }
 
 void print(const char* name, const Verdict& v) {
@@ -120,11 +119,8 @@ bool parse(int argc, char** argv, Job& job) {
     const char* name;
     std::uint64_t& value;
   };
-  const Option options[] = {{"--rays", job.rays},
-                            {"--lines", job.lines},
-                            {"--first", job.first},
-                            {"--scenes", job.scenes},
-                            {"--threads", job.threads}};
+  const Option options[] = {{"--rays", job.rays},     {"--lines", job.lines},   {"--first", job.first},
+                            {"--scenes", job.scenes}, {"--varied", job.varied}, {"--threads", job.threads}};
   for (int i = 1; i + 1 < argc; i += 2) {
     bool known = false;
     for (const Option& o : options)
@@ -142,13 +138,14 @@ bool parse(int argc, char** argv, Job& job) {
 int main(int argc, char** argv) {
   Job job;
   if (!parse(argc, argv, job)) {
-    std::fprintf(stderr, "stress [--rays N] [--lines N] [--first SCENE] [--scenes N] [--threads N]\n");
+    std::fprintf(stderr, "stress [--rays N] [--lines N] [--first SCENE] [--scenes N] [--varied N] [--threads N]\n");
     return 2;
   }
   const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, job.threads);
-  std::vector<Outcome> outcomes(job.scenes);
-  tbb::parallel_for(std::size_t{0}, outcomes.size(),
-                    [&](std::size_t i) { outcomes[i] = run_scene(job, job.first + i); });
+  std::vector<Outcome> outcomes(job.scenes + job.varied);
+  tbb::parallel_for(std::size_t{0}, outcomes.size(), [&](std::size_t i) {
+    outcomes[i] = run_scene(job, i < job.scenes ? job.first + i : first_varied_scene + i - job.scenes);
+  });
   Outcome all;
   for (const Outcome& o : outcomes)
     for (std::size_t f = 0; f < family_count; ++f) {
@@ -160,7 +157,8 @@ int main(int argc, char** argv) {
       all.kinds[k].add(o.kinds[k]);
       all.kind_lines[k].add(o.kind_lines[k]);
     }
-  fmt::print("scenes {} to {}\n", job.first, job.first + job.scenes - 1);
+  fmt::print("scenes {} to {}, and {} of varying angles from {} on\n", job.first, job.first + job.scenes - 1,
+             job.varied, first_varied_scene);
   const bool held = judged(all);
   fmt::print("cpu {:.1f} s\n", static_cast<double>(std::clock()) / CLOCKS_PER_SEC);
   return held ? 0 : 1;

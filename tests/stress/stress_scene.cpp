@@ -163,7 +163,8 @@ void scale(BlendField& blend, double by, const Vec3d& move) {
 // Half of the scenes keep their size; the others are from 1e-4 to 1e4 of it, and some stand far from the origin.
 StressScene::StressScene(std::uint64_t number) {
   Random random(number, Random::Silent{});
-  kind_ = number % draws.size();
+  constexpr std::size_t varied_kinds = draws.size() - single_angle_kinds;
+  kind_ = number < first_varied_scene ? number % single_angle_kinds : single_angle_kinds + number % varied_kinds;
   Draft draft = draws[kind_](random);
   const double factor = random.between(0, 1) < 0.5 ? 1 : pow(10, random.between(-4, 4));
   const double away = draft.away > 0 ? draft.away : random.between(0, 1) < 0.8 ? 0 : 30;
@@ -183,7 +184,7 @@ StressScene::StressScene(std::uint64_t number) {
 // of small or of many primitives.
 TraceOptions options_of(std::uint64_t number) {
   TraceOptions options;
-  const std::uint64_t way = number / kind_names.size() % 4;
+  const std::uint64_t way = number / single_angle_kinds % 4;
   if (way >= 2) {
     RaySpacing few;
     few.views.push_back({.eye = {}, .constant = std::numeric_limits<double>::infinity()});
