@@ -1,151 +1,13 @@
 #include "field/trace/blend_tracer.h"
 
 #include <algorithm>
-#include <cmath>
+#include <bit>
 #include <utility>
 
-#include "field/trace/angle_field.h"
-#include "field/trace/block.h"
-#include "field/trace/cell_tree.h"
-#include "field/trace/precision.h"
-#include "field/trace/serial.h"
-#include "field/trace/strands.h"
+#include "field/trace/blend_tracer_state.h"
+#include "field/trace/ray_in_cube.h"
 
 namespace marrow {
-namespace {
-
-// [t_enter, t_exit] of the ray in a box; the same plane gives the same t in neighbouring cells.
-std::pair<double, double> clip(const Box3& box, const Ray& ray, const Vec3d& inverse_direction) {
-  double enter = ray.t_min, exit = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double o = ray.origin[i], k = inverse_direction[i];
-    if (std::isinf(k)) {
-      if (o < box.lower[i] || o > box.upper[i]) return {1, 0};
-      continue;
-    }
-    const double a = (box.lower[i] - o) * k, b = (box.upper[i] - o) * k;
-    enter = std::max(enter, std::min(a, b));
-    exit = std::min(exit, std::max(a, b));
-  }
-  return {enter, exit};
-}
-
-Vec3d vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
-
-// IsoCurve::margin() for all shares that alpha may have on a step along the normal, as in march.h.
-double margin_of_shares(const PointField& f, const Vec3d& normal, double step, const BlockLevel& fine,
-                        const IsoCurve& iso, double x, double y, double n) {
-  const double left = 1 - (4 * n + 2) * step / f.nearest;
-  if (!(left > 0.1) || !(f.share_bend < std::numeric_limits<float>::infinity()))
-    return std::min(iso.margin(x, y, 0), iso.margin(x, y, 1));
-  const double move = dot(vec(f.share_gradient), normal) * step, bend = f.share_bend * step * step;
-  // What strands give is within 1e-4 at 99 of 100 random places (an estimate); else floats are rounded.
-  const double known_to = fine.level.strands != nullptr ? 2e-4 : 1e-5;
-  const double error = 2 * (fine.angle_error + f.share * fine.f_error) / std::max(1e-20F, f.f) + known_to;
-  return std::min(iso.margin(x, y, f.share + (std::min(0.0, move - bend) - error) / left),
-                  iso.margin(x, y, f.share + (std::max(0.0, move + bend) + error) / left));
-}
-
-// How far to go along the normal until the field is certainly below 1: f and |G| there are bounded by their Taylor
-// polynomials and the remainders B3 and B4 of tracing.md, with series sums up to twice their values at 0 (a step of at
-// most a tenth of the distance). Twice the errors of the block, since a ray may start in its neighbour. Where no step
-// is proved, beside a touch of the surface with itself, the one that comes nearest to it. Block coordinates.
-double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent, const BlockLevel& fine,
-                    const IsoCurve& iso, int degree) {
-  const double slope = dot(vec(f.gradient), normal), n = degree;
-  // As march.h: sums of floats, and positions in float.
-  const double raise = 1 + 2 * (4e-6 + 2e-7 * (n + 1) / f.nearest);
-  constexpr double enough = 2e-5;  // so that rays get away from where rounding leaves doubts
-  double best = 0, largest = -std::numeric_limits<double>::infinity();
-  for (double step = 2e-6 * f.nearest; step < 0.1 * f.nearest; step *= 2) {
-    const double bend = f.second * n * (n + 1) * step * step;
-    const double x = f.f + slope * step + bend + 2 * fine.f_error, x_low = f.f + slope * step - bend - 2 * fine.f_error;
-    const double y =
-        length(vec(f.si_gradient) + bent * step) + f.third * (n + 1) * (n + 2) * step * step + 2 * fine.gradient_error;
-    double margin = iso.margin(x * raise, y * raise);
-    if (iso.views().size() > 1) margin = margin_of_shares(f, normal, step, fine, iso, x * raise, y * raise, n);
-    if (iso.two_sided()) margin = std::min(margin, iso.margin(std::max(0.0, x_low / raise), y * raise));
-    if (margin > enough) return step;
-    if (margin > largest) {
-      largest = margin;
-      best = step;
-    }
-  }
-  return best;
-}
-
-CellTreeSettings cells_of(const TraceOptions& options, std::size_t piece_count) {
-  CellTreeSettings settings = options.cells.value_or(cells_for(piece_count));
-  if (options.spacing) settings.spacing = options.spacing;
-  return settings;
-}
-
-// With the angle at which most is inside, where it varies.
-Correction correction_for(const BlendField& field) {
-  const auto range = angle_range(field);
-  const double alpha = range ? range->least : single_angle(field).value_or(field.alpha);
-  return Correction(field.degree, alpha, field.cavity, field.projection);
-}
-
-}  // namespace
-
-struct BlendTracer::State {
-  BlendField field;
-  Correction correction;
-  std::optional<AngleRange> range;  // of an alpha that varies
-  IsoCurve iso;
-  PieceCutter cutter;
-  SourceTree sources, angle_sources;  // the second one where skeletons have an angle each
-  const BlockKernels& kernels;
-  std::optional<Strands> strands;  // where their directions give the angle
-  NearFar coarse, fine;
-  mutable BlockArena arena;
-  CellTree tree;
-  Block::Context context;
-  Box3 bounds;                           // of all tiles
-  std::uint64_t serial = next_serial();  // of this tracer
-
-  State(BlendField f, const TraceOptions& options, const BlockKernels& k)
-      : field(std::move(f)),
-        correction(correction_for(field)),
-        range(angle_range(field)),
-        iso(range ? IsoCurve(correction, range->least, range->most) : IsoCurve(correction, correction.alpha())),
-        cutter(field.degree, iso.critical_field()),
-        sources(cutter.cut(field), field.degree),
-        angle_sources(
-            range && field.alpha_per_skeleton ? angle_pieces(field, *range, cutter.cut(field)) : std::vector<Piece>{},
-            field.degree),
-        kernels(k),
-        coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
-        fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
-        tree(sources, coarse, fine, iso, kernels, field.degree, cells_of(options, sources.pieces().size())),
-        context{sources.pieces(),
-                tree,
-                cutter,
-                coarse,
-                fine,
-                iso,
-                kernels,
-                field.degree,
-                arena,
-                options.kept_bytes,
-                range && field.alpha_per_skeleton ? &angle_sources : nullptr} {
-    if (range && !field.alpha_per_skeleton) {
-      strands.emplace(field, sources.pieces(), kernels);
-      context.strands = &*strands;
-    }
-    for (std::size_t i = 0; i < tree.tile_count(); ++i) bounds.include(tree.tile_box(i));
-  }
-
-  // |dC/dalpha| <= n - 1 at the surface: |g(f) - G| at alpha = pi/2, with g(1) = n - 1 and G <= 2 g (tracing.md 2);
-  // checked numerically for other angles. The share of alpha is a quotient of sums of some 1. What is known of strands
-  // is an estimate.
-  double largest_error(const BlockLevel& level) const {
-    const double range_of_angles = range ? range->most - range->least : 0, steepest = field.degree - 1;
-    const double turned = steepest * range_of_angles * (level.angle_error + level.f_error);
-    return level.f_error + level.gradient_error / field.degree + turned;
-  }
-};
 
 Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const TraceOptions& options) {
   if (const std::string part = untraceable_part(field); !part.empty()) return failure(part);
@@ -171,28 +33,6 @@ const Block& BlendTracer::block(const Tile& tile, int slot) const {
   return tile.block(slot).get(
       [&] { return std::make_unique<const Block>(state_->context, CellTree::cell(tile, slot)); });
 }
-
-namespace {
-
-// A ray in the coordinates of a cube, with t counted from its point nearest to the centre of the cube.
-struct RayInCube {
-  double t_near, half;
-  LocalRay local;
-
-  RayInCube(const Ray& ray, const Vec3d& center, double cube_half)
-      : t_near(dot(center - ray.origin, ray.direction)), half(cube_half) {
-    const double scale = 1 / half;
-    const Vec3d start = (ray.origin - center + ray.direction * t_near) * scale;
-    for (std::size_t i = 0; i < 3; ++i) {
-      local.origin[i] = static_cast<float>(start[i]);
-      local.direction[i] = static_cast<float>(ray.direction.vec()[i]);
-    }
-  }
-  float to_local(double t) const { return static_cast<float>((t - t_near) / half); }
-  double to_world(float t) const { return t_near + static_cast<double>(t) * half; }
-};
-
-}  // namespace
 
 std::optional<CellHit> BlendTracer::first_hit(std::size_t tile, const Ray& ray, bool any, CellLog& log) const {
   const Vec3d& direction = ray.direction;
@@ -276,32 +116,6 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
   log.undecided = std::min(log.undecided, cube.to_world(root.undecided));
   if (!root.hit) return {};
   return CellHit{std::max(cube.to_world(root.t), ray.t_min), &b};
-}
-
-SurfacePoint BlendTracer::surface_at(std::size_t tile, const Vec3d& position) const {
-  const CellTree::Cell cell = state_->tree.nearest_cell(tile, position);
-  return surface_at(block(*cell.tile, cell.slot), position);
-}
-
-SurfacePoint BlendTracer::surface_at(const Block& b, const Vec3d& position) const {
-  const Vec3d x = (position - b.center()) / b.half();
-  const float local[3] = {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)};
-  const PointField f = state_->kernels.point_field(b.fine().level, state_->field.degree, local);
-  const Vec3d gradient = vec(f.gradient), g = vec(f.si_gradient);
-  const float* h = f.hessian;
-  const auto bend = [&](const Vec3d& v) {  // H v
-    return Vec3d{h[0] * v.x + h[3] * v.y + h[4] * v.z, h[3] * v.x + h[1] * v.y + h[5] * v.z,
-                 h[4] * v.x + h[5] * v.y + h[2] * v.z};
-  };
-  const double y = length(g);
-  const IsoCurve::Gradient c = state_->iso.gradient(f.f, y, f.share);
-  Vec3d growth = gradient * c.x + bend(g) * (c.y / std::max(y, 1e-12));
-  if (state_->range) growth += vec(f.share_gradient) * c.share;
-  SurfacePoint out;
-  out.normal = normalize(-growth);
-  out.outside = position + out.normal * (b.half() * step_outside(f, out.normal, bend(out.normal), b.fine(), state_->iso,
-                                                                 state_->field.degree));
-  return out;
 }
 
 TraceStatistics BlendTracer::statistics() const {

@@ -43,9 +43,17 @@ struct CellHit {
   const Block* block = nullptr;  ///< that it was found in
 };
 
-/// What a ray did in a tile, hit or not.
+/// A part of a blend's space, as far as it is divided by now: a tile, a smaller tile in it, or a cell.
+struct TracePart {
+  std::size_t tile = 0;          ///< of the first level
+  const Tile* within = nullptr;  ///< the tile whose slot it is; null for a whole tile of the first level
+  int slot = 0;
+  Box3 box{};  ///< around all of the part that a ray has to be traced in
+};
+
+/// What a ray did in a tile or a part, hit or not.
 struct CellLog {
-  double enter = 0;                                            ///< t at which the ray came into the tile
+  double enter = 0;                                            ///< t at which the ray came into it
   double undecided = std::numeric_limits<double>::infinity();  ///< t of the first gap too short to decide
   std::uint32_t evaluations = 0;                               ///< of the field
   enum class Side { Unknown, Outside, Inside };
@@ -80,6 +88,11 @@ class BlendTracer {
   /// t does not depend on ray.t_max. With `any`, any root, or
   /// what is inside already.
   std::optional<CellHit> first_hit(std::size_t tile, const Ray&, bool any, CellLog&) const;
+  /// What tiles have been divided into so far, less what is known to hold no surface. Answers stay good.
+  std::vector<TracePart> parts() const;
+  /// The first hit of first_hit() in a tile is the nearest one of its parts, to the same bits; except that a ray is not
+  /// followed from part to part: when it turns out to begin inside, `log.side` says so, and its tiles have to be asked.
+  std::optional<CellHit> first_hit(const TracePart&, const Ray&, bool any, CellLog&) const;
   /// Normal and starting point at a hit in this tile.
   SurfacePoint surface_at(std::size_t tile, const Vec3d& position) const;
   /// The same in the block of a hit.
@@ -93,6 +106,10 @@ class BlendTracer {
   explicit BlendTracer(std::unique_ptr<State>);
   std::optional<CellHit> hit_in(const Tile&, const Ray&, bool any, double enter, double exit, CellLog&) const;
   std::optional<CellHit> hit_in(const Tile&, int slot, const Ray&, bool any, double enter, double exit, CellLog&) const;
+  struct Stretch;
+  std::optional<Stretch> stretch_in(const Tile&, const Ray&, bool any) const;
+  std::optional<Stretch> stretch_in(const Tile&, int slot, const Ray&, bool any) const;
+  void add_parts(std::size_t tile, const Tile& within, std::vector<TracePart>&) const;
   const Block& block(const Tile&, int slot) const;
   std::unique_ptr<State> state_;
 };

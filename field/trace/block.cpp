@@ -1,5 +1,6 @@
 #include "field/trace/block.h"
 
+#include <bit>
 #include <memory>
 
 #include "field/trace/block_levels.h"
@@ -69,6 +70,24 @@ std::uint64_t Block::surface(int octant) const {
     surface_known_.fetch_or(static_cast<std::uint8_t>(1U << octant), std::memory_order_release);
   }
   return slots.load(std::memory_order_relaxed);
+}
+
+Box3 Block::surface_box() const {
+  Box3 box;  // in the block
+  for (int octant = 0; octant < 8; ++octant) {
+    if (!(octants_ >> octant & 1)) continue;
+    const bool known = surface_known_.load(std::memory_order_acquire) >> octant & 1;
+    const Vec3d center = octant_center({0, 0, 0}, 1, octant), h{0.125, 0.125, 0.125};
+    std::uint64_t left = known ? surface_[static_cast<std::size_t>(octant)].load(std::memory_order_relaxed) : ~0ULL;
+    for (; left != 0; left &= left - 1) {
+      const Vec3d slot = slot_center(center, 0.5, std::countr_zero(left));
+      box.include({slot - h, slot + h});
+    }
+  }
+  if (box.empty()) return {};
+  constexpr double rounding = 1e-6;  // some of float's, for places and slots in the block
+  return Box3{cell_.center + box.lower * cell_.half, cell_.center + box.upper * cell_.half}.padded(rounding *
+                                                                                                   cell_.half);
 }
 
 template <class Make>

@@ -44,6 +44,9 @@ class Block {
   const BlockView& view() const { return view_; }
   /// No octant can hold surface.
   bool empty() const { return octants_ == 0; }
+  /// Around all slots that may hold surface, as far as they are known by now; a little larger, for what rounding does
+  /// to rays. Empty when there are none.
+  Box3 surface_box() const;
   const Vec3d& center() const { return cell_.center; }
   double half() const { return cell_.half; }
 

@@ -42,6 +42,8 @@ class CellTree {
   std::size_t tile_count() const { return places_.size(); }
   Box3 tile_box(std::size_t i) const { return places_[i].box(); }
   const Tile& tile(std::size_t i) const;
+  /// Null when nobody has asked for it yet.
+  const Tile* tile_if_made(std::size_t i) const { return tiles_[i].peek(); }
   const Tile& child(const Tile&, int slot) const;
   static Cell cell(const Tile&, int slot);
 

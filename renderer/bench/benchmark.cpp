@@ -71,7 +71,10 @@ class Measurement {
     out_.first_ray_s = ready.first_ray_s;
     say("first frame");
     auto engine = engine_of(*ready.surfaces);
-    out_.first_frame = cost_of([&] { shaded_frame(*engine, workload_, frame_); });
+    out_.first_frame = cost_of([&] {
+      shaded_frame(*engine, workload_, frame_);
+      engine->refine();
+    });
     EngineFigures figures;
     figures.name = "marrow";
     figures.primitives = workload_.size();
@@ -127,6 +130,14 @@ class Measurement {
     return {(four.wall_s - two.wall_s) / 2, (four.cpu_s - two.cpu_s) / 2};
   }
 
+  // Evaluations are counted beside the race, because counting takes time.
+  template <class Frame>
+  static void recorded(const PreparedScene& ready, RayCounts& counts, const Frame& frame) {
+    const RayCounts again = frame(*recording_engine_of(*ready.surfaces));
+    counts.evaluations = again.evaluations;
+    counts.uncertified = again.uncertified;
+  }
+
   void race_frames(const PreparedScene& ready) {
     further_sample(ready);  // samples beside the pixels' middles enter cells of their own
     std::vector<Cost> samples;
@@ -141,6 +152,8 @@ class Measurement {
       r.figures.frame_ratio = median_ratio(racers_.front().frames, r.frames);
     }
     out_.sample = median(samples);
+    recorded(ready, racers_.front().figures.frame,
+             [&](const RayEngine& engine) { return shaded_frame(engine, workload_, frame_); });
     if (racers_.size() > 1) out_.sample_over_cones = median_ratio(samples, racers_[1].frames);
   }
 
@@ -148,6 +161,7 @@ class Measurement {
     for (Racer& r : racers_) {
       r.starts = hits_of_frame(*r.engine, workload_, frame_);
       diffuse_paths(*r.engine, r.starts, bounces_of_a_path, frame_);  // bounces enter cells of their own
+      r.engine->refine();
     }
     for (int round = 0; round < settings_.rounds; ++round) {
       say(fmt::format("bounces, round {} of {}", round + 1, settings_.rounds));
@@ -191,11 +205,13 @@ class Measurement {
     if (!sum) return;
     const auto plain = engine_of(*sum->surfaces);
     shaded_frame(*plain, workload_, frame_);
+    plain->refine();
     for (const Rule& rule : rules) {
       const auto ready = with(rule.text);
       if (!ready) continue;
       const auto engine = engine_of(*ready->surfaces);
       shaded_frame(*engine, workload_, frame_);
+      engine->refine();
       std::vector<Cost> ours, sums;
       for (int round = 0; round < settings_.rounds; ++round) {
         ours.push_back(cost_of([&] { shaded_frame(*engine, workload_, frame_); }));

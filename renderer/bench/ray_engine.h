@@ -17,7 +17,7 @@ struct RayCounts {
   std::uint64_t rays = 0;         ///< for the nearest hit
   std::uint64_t hits = 0;         ///< of these rays
   std::uint64_t shadow_rays = 0;  ///< for any hit
-  std::uint64_t evaluations = 0;  ///< of the field, for the nearest hits; 0 for engines without a field
+  std::uint64_t evaluations = 0;  ///< of the field, for the nearest hits; 0 for engines that do not count them
   std::uint64_t uncertified = 0;  ///< rays for which it is not proved that nothing was skipped
   double light = 0;               ///< sum of all shades: nothing may be optimised away
 
@@ -35,10 +35,14 @@ class RayEngine {
   virtual ~RayEngine() = default;
   virtual bool first_hit(const Ray&, EngineHit&, RayCounts&) const = 0;
   virtual bool occluded(const Ray&) const = 0;
+  /// As Surfaces::refine().
+  virtual void refine() const {}
 };
 
 /// The surfaces of this project; they must outlive the engine.
 std::unique_ptr<RayEngine> engine_of(const Surfaces&);
+/// The same, but slower: it counts evaluations and what is not certified.
+std::unique_ptr<RayEngine> recording_engine_of(const Surfaces&);
 
 struct TriangleMesh {
   std::vector<std::array<float, 3>> vertices;

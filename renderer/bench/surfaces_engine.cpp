@@ -4,28 +4,45 @@
 namespace marrow {
 namespace {
 
-class SurfacesEngine final : public RayEngine {
+class SurfacesEngine : public RayEngine {
  public:
   explicit SurfacesEngine(const Surfaces& surfaces) : surfaces_(surfaces) {}
 
-  bool first_hit(const Ray& ray, EngineHit& hit, RayCounts& counts) const override {
-    RayRecord record;
-    const auto found = surfaces_.first_hit(ray, record);
-    counts.evaluations += record.evaluations;
-    counts.uncertified += record.certified ? 0 : 1;
+  bool first_hit(const Ray& ray, EngineHit& hit, RayCounts& counts) const final {
+    const auto found = traced(ray, counts);
     if (!found) return false;
     hit = {found->position, found->normal.vec(), found->outside};
     return true;
   }
-  bool occluded(const Ray& ray) const override { return surfaces_.occluded(ray); }
+  bool occluded(const Ray& ray) const final { return surfaces_.occluded(ray); }
+  void refine() const final { surfaces_.refine(); }
+
+ protected:
+  virtual std::optional<SurfaceHit> traced(const Ray& ray, RayCounts&) const { return surfaces_.first_hit(ray); }
+  const Surfaces& surfaces_;
+};
+
+class RecordingEngine final : public SurfacesEngine {
+ public:
+  using SurfacesEngine::SurfacesEngine;
 
  private:
-  const Surfaces& surfaces_;
+  std::optional<SurfaceHit> traced(const Ray& ray, RayCounts& counts) const override {
+    RayRecord record;
+    const auto found = surfaces_.first_hit(ray, record);
+    counts.evaluations += record.evaluations;
+    counts.uncertified += record.certified ? 0 : 1;
+    return found;
+  }
 };
 
 }  // namespace
 
 std::unique_ptr<RayEngine> engine_of(const Surfaces& surfaces) { return std::make_unique<SurfacesEngine>(surfaces); }
+
+std::unique_ptr<RayEngine> recording_engine_of(const Surfaces& surfaces) {
+  return std::make_unique<RecordingEngine>(surfaces);
+}
 
 RayCounts& RayCounts::operator+=(const RayCounts& b) {
   rays += b.rays;

@@ -1,15 +1,15 @@
 // Solids under one Embree hierarchy, and infinite planes beside it.
-//
-// Embree only finds candidate boxes, in float; roots are found and compared in double. Boxes are padded by
-// 8 * 2^-24 * M, M the largest coordinate of boxes and ray origins, so that no rounding of the float traversal can
-// lose a box, on any instruction set; ray origins are moved up to the scene's bounds to keep M its own size.
 #pragma once
 
+#include <atomic>
 #include <memory>
+#include <mutex>
+#include <string>
 #include <vector>
 
 #include "field/base/result.h"
 #include "renderer/geometry/embree_handles.h"
+#include "renderer/geometry/part_hierarchy.h"
 #include "renderer/geometry/solid.h"
 #include "renderer/geometry/surfaces.h"
 
@@ -18,7 +18,6 @@ namespace marrow {
 struct PlacedSolid {
   std::unique_ptr<Solid> solid;
   ObjectId object;
-  double padding = 0;  ///< of the boxes of its elements; set by EmbreeSurfaces
 };
 
 struct PlacedPlane {
@@ -34,10 +33,11 @@ class EmbreeSurfaces final : public Surfaces {
   static Result<std::unique_ptr<EmbreeSurfaces>> make(std::vector<PlacedSolid>, std::vector<PlacedPlane>,
                                                       const std::string& config);
 
-  using Surfaces::first_hit;
+  std::optional<SurfaceHit> first_hit(const Ray&) const override;
   std::optional<SurfaceHit> first_hit(const Ray&, RayRecord&) const override;
   bool occluded(const Ray&) const override;
   Box3 bounds() const override { return extent_; }
+  void refine() const override;
 
   const std::vector<PlacedSolid>& solids() const { return solids_; }
   double build_seconds = 0;
@@ -45,14 +45,26 @@ class EmbreeSurfaces final : public Surfaces {
  private:
   EmbreeSurfaces(std::vector<PlacedSolid> solids, std::vector<PlacedPlane> planes)
       : solids_(std::move(solids)), planes_(std::move(planes)) {}
+  // How finely space is divided: a ray meets a box with a probability that goes with its area.
+  struct Division {
+    std::size_t parts = 0;
+    double area = 0;
+    void add(const std::vector<SolidPart>&);
+    bool is_like(const Division&) const;
+  };
   const PlacedPlane* nearest_plane(const Ray&, double& t) const;
+  const PartHierarchy& finest() const { return *finest_.load(std::memory_order_acquire); }
+  std::optional<SurfaceHit> hit_of(const PartHierarchy::Hit&, const PlacedPlane*, double plane_t, const Ray&) const;
 
   std::vector<PlacedSolid> solids_;
   std::vector<PlacedPlane> planes_;
-  Box3 extent_;         // of all solids
-  Box3 padded_bounds_;  // what rays are clipped to
+  Box3 extent_;  // of all solids
   EmbreeDevice device_;
-  EmbreeScene scene_;
+  // Of whole elements, then finer ones. All stay, since rays may be under way in them.
+  mutable std::vector<std::unique_ptr<const PartHierarchy>> hierarchies_;
+  mutable std::atomic<const PartHierarchy*> finest_ = nullptr;
+  mutable std::mutex refining_;
+  mutable Division division_;  // of the finest
 };
 
 }  // namespace marrow

@@ -51,14 +51,37 @@ FieldSolid::LocalRay FieldSolid::to_local(const Ray& ray) const {
           stretch};
 }
 
-std::optional<double> FieldSolid::hit(std::size_t element, const Ray& ray, bool any, ElementLog& log) const {
+template <class Place>
+std::optional<double> FieldSolid::traced(const Place& place, const Ray& ray, bool any, ElementLog& log) const {
   const auto [local, stretch] = to_local(ray);
   CellLog cell;
-  const auto found = tracer_->first_hit(element, local, any, cell);
-  log = {cell.enter / stretch, cell.undecided / stretch, cell.evaluations};
+  const auto found = tracer_->first_hit(place, local, any, cell);
+  log = {.enter = cell.enter / stretch,
+         .undecided = cell.undecided / stretch,
+         .evaluations = cell.evaluations,
+         .begins_inside = cell.side == CellLog::Side::Inside};
   if (!found) return {};
   log.place = found->block;
   return found->t / stretch;
+}
+
+std::optional<double> FieldSolid::hit(std::size_t element, const Ray& ray, bool any, ElementLog& log) const {
+  const auto t = traced(element, ray, any, log);
+  log.begins_inside = false;  // the element has been told
+  return t;
+}
+
+std::optional<double> FieldSolid::hit_in_part(const SolidPart& part, const Ray& ray, bool any, ElementLog& log) const {
+  if (part.within == nullptr) return hit(part.element, ray, any, log);
+  return traced(TracePart{part.element, static_cast<const Tile*>(part.within), part.slot}, ray, any, log);
+}
+
+std::vector<SolidPart> FieldSolid::parts() const {
+  const std::vector<TracePart> traced = tracer_->parts();
+  std::vector<SolidPart> parts;
+  parts.reserve(traced.size());
+  for (const TracePart& p : traced) parts.push_back({p.tile, to_world(p.box), p.within, p.slot});
+  return parts;
 }
 
 void FieldSolid::describe(std::size_t, const void* place, const Ray&, SurfaceHit& hit) const {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "field/base/id.h"
 #include "field/math/box3.h"
@@ -19,6 +20,15 @@ struct ElementLog {
   double undecided = std::numeric_limits<double>::infinity();  ///< the first place that could not be decided
   std::uint32_t evaluations = 0;
   const void* place = nullptr;  ///< of a hit in the element, for describe()
+  bool begins_inside = false;   ///< of a part: the ray begins inside, and elements have to be asked instead
+};
+
+/// A part of an element, as far as it is known where in the element surface can be.
+struct SolidPart {
+  std::size_t element = 0;
+  Box3 box{};
+  const void* within = nullptr;  ///< these two are the solid's own
+  int slot = 0;
 };
 
 /// Immutable; safe to use from many threads. All rays and points are in world coordinates.
@@ -31,10 +41,23 @@ class Solid {
   virtual Box3 extent() const = 0;
   /// t of the first hit in an element, in [ray.t_min, ray.t_max] but not depending on t_max; any hit with `any`.
   virtual std::optional<double> hit(std::size_t element, const Ray&, bool any, ElementLog&) const = 0;
+  /// The elements, or what they are known to consist of by now; together they hold all surface. Whatever rays are under
+  /// way meanwhile, answers stay good.
+  virtual std::vector<SolidPart> parts() const;
+  /// The nearest of the hits in its parts is that of an element, to the same bits.
+  virtual std::optional<double> hit_in_part(const SolidPart& part, const Ray& ray, bool any, ElementLog& log) const {
+    return hit(part.element, ray, any, log);
+  }
   /// Fills normal, outside and material of a hit whose position is known; `place` as hit() told it.
   virtual void describe(std::size_t element, const void* place, const Ray&, SurfaceHit&) const = 0;
   virtual std::size_t primitive_count() const = 0;
   virtual std::size_t bytes() const = 0;
 };
+
+inline std::vector<SolidPart> Solid::parts() const {
+  std::vector<SolidPart> parts(element_count());
+  for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = {.element = i, .box = element_box(i)};
+  return parts;
+}
 
 }  // namespace marrow

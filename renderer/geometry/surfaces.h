@@ -31,15 +31,19 @@ class Surfaces {
  public:
   virtual ~Surfaces() = default;
   /// The first hit with ray.t_min <= t <= ray.t_max.
-  virtual std::optional<SurfaceHit> first_hit(const Ray&, RayRecord&) const = 0;
-  std::optional<SurfaceHit> first_hit(const Ray& ray) const {
+  virtual std::optional<SurfaceHit> first_hit(const Ray& ray) const {
     RayRecord unused;
     return first_hit(ray, unused);
   }
+  /// The same hit, to the same bits, and what it took; slower once refine() has been called.
+  virtual std::optional<SurfaceHit> first_hit(const Ray&, RayRecord&) const = 0;
   /// Whether any surface lies on the ray within its interval.
   virtual bool occluded(const Ray&) const = 0;
   /// Of all finite objects; planes do not count. Empty when there are none.
   virtual Box3 bounds() const = 0;
+  /// Uses what earlier rays have found for a finer division of space: later rays get the same answers, sooner. To be
+  /// called a few times at most, when there are many rays to come; rays may be under way.
+  virtual void refine() const {}
 };
 
 }  // namespace marrow

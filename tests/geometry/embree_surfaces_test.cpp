@@ -28,9 +28,11 @@ Ray touching_box(Random& random, const Box3& box) {
 
 struct Comparison {
   int rays = 0, hits = 0, lost = 0, differ = 0, occlusion = 0;
+  static constexpr int refined_every = 311;
 
+  // Refined now and then, so that rays are asked of elements and of parts of all sizes.
   void check(const SolidScene& scene, const Ray& ray) {
-    ++rays;
+    if (++rays % refined_every == 0) scene.surfaces().refine();
     const auto expected = scene.brute_force(ray);
     const auto found = scene.surfaces().first_hit(ray);
     hits += expected.has_value();

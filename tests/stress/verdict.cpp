@@ -155,6 +155,7 @@ void Verdict::add(const Verdict& b) {
   uncertified += b.uncertified;
   wrong_side += b.wrong_side;
   limits += b.limits;
+  unlike += b.unlike;
   points += b.points;
   measured += b.measured;
   within_4_ulp += b.within_4_ulp;
@@ -170,9 +171,21 @@ void Verdict::add(const Verdict& b) {
   merge(limit_rays, b.limit_rays);
 }
 
+namespace {
+
+bool same(const std::optional<SurfaceHit>& a, const std::optional<SurfaceHit>& b) {
+  return a.has_value() == b.has_value() && (!a || (a->t == b->t && a->outside == b->outside));
+}
+
+}  // namespace
+
 void judge(const StressScene& scene, const Ray& ray, const char* family, bool from_afar, Verdict& v) {
   RayRecord record;
   const auto hit = scene.surfaces().first_hit(ray, record);
+  if (!same(hit, scene.surfaces().first_hit(ray))) {
+    ++v.unlike;
+    note(v.limit_rays, text(scene, ray, family, "another answer without a record at", hit ? hit->t : 0));
+  }
   ++v.rays;
   v.evaluations += record.evaluations;
   v.uncertified += !record.certified;

@@ -26,6 +26,8 @@ struct Verdict {
   /// A hit that is not the same, or not gone, when the ray ends at it, or just before it; or occluded() differs from
   /// first_hit() for rays that end 4 ulp of float behind it, or before it.
   std::uint64_t limits = 0;
+  /// The answer is another one without a record: of parts of elements instead of elements.
+  std::uint64_t unlike = 0;
   /// A hit off the surface by more than allowed_displacement, where the field is so flat that it is nearly 1 all the
   /// same.
   std::uint64_t displaced = 0;

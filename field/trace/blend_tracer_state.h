@@ -1,0 +1,89 @@
+// What a tracer of one blend is made of. For the sources of BlendTracer alone.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "field/trace/angle_field.h"
+#include "field/trace/blend_tracer.h"
+#include "field/trace/block.h"
+#include "field/trace/cell_tree.h"
+#include "field/trace/precision.h"
+#include "field/trace/serial.h"
+#include "field/trace/strands.h"
+
+namespace marrow {
+
+inline CellTreeSettings cells_of(const TraceOptions& options, std::size_t piece_count) {
+  CellTreeSettings settings = options.cells.value_or(cells_for(piece_count));
+  if (options.spacing) settings.spacing = options.spacing;
+  return settings;
+}
+
+// With the angle at which most is inside, where it varies.
+inline Correction correction_for(const BlendField& field) {
+  const auto range = angle_range(field);
+  const double alpha = range ? range->least : single_angle(field).value_or(field.alpha);
+  return Correction(field.degree, alpha, field.cavity, field.projection);
+}
+
+struct BlendTracer::State {
+  BlendField field;
+  Correction correction;
+  std::optional<AngleRange> range;  // of an alpha that varies
+  IsoCurve iso;
+  PieceCutter cutter;
+  SourceTree sources, angle_sources;  // the second one where skeletons have an angle each
+  const BlockKernels& kernels;
+  std::optional<Strands> strands;  // where their directions give the angle
+  NearFar coarse, fine;
+  mutable BlockArena arena;
+  CellTree tree;
+  Block::Context context;
+  Box3 bounds;                           // of all tiles
+  std::uint64_t serial = next_serial();  // of this tracer
+
+  State(BlendField f, const TraceOptions& options, const BlockKernels& k)
+      : field(std::move(f)),
+        correction(correction_for(field)),
+        range(angle_range(field)),
+        iso(range ? IsoCurve(correction, range->least, range->most) : IsoCurve(correction, correction.alpha())),
+        cutter(field.degree, iso.critical_field()),
+        sources(cutter.cut(field), field.degree),
+        angle_sources(
+            range && field.alpha_per_skeleton ? angle_pieces(field, *range, cutter.cut(field)) : std::vector<Piece>{},
+            field.degree),
+        kernels(k),
+        coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels),
+        fine(field.degree, budget_of(options.tolerance, field.degree), kernels),
+        tree(sources, coarse, fine, iso, kernels, field.degree, cells_of(options, sources.pieces().size())),
+        context{sources.pieces(),
+                tree,
+                cutter,
+                coarse,
+                fine,
+                iso,
+                kernels,
+                field.degree,
+                arena,
+                options.kept_bytes,
+                range && field.alpha_per_skeleton ? &angle_sources : nullptr} {
+    if (range && !field.alpha_per_skeleton) {
+      strands.emplace(field, sources.pieces(), kernels);
+      context.strands = &*strands;
+    }
+    for (std::size_t i = 0; i < tree.tile_count(); ++i) bounds.include(tree.tile_box(i));
+  }
+
+  // |dC/dalpha| <= n - 1 at the surface: |g(f) - G| at alpha = pi/2, with g(1) = n - 1 and G <= 2 g (tracing.md 2);
+  // checked numerically for other angles. The share of alpha is a quotient of sums of some 1. What is known of strands
+  // is an estimate.
+  double largest_error(const BlockLevel& level) const {
+    const double range_of_angles = range ? range->most - range->least : 0, steepest = field.degree - 1;
+    const double turned = steepest * range_of_angles * (level.angle_error + level.f_error);
+    return level.f_error + level.gradient_error / field.degree + turned;
+  }
+};
+
+}  // namespace marrow

@@ -1,0 +1,111 @@
+// What a blend's space has been divided into so far, and rays in one part of it.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "field/trace/blend_tracer_state.h"
+#include "field/trace/ray_in_cube.h"
+
+namespace marrow {
+
+// Where a ray is in the tile or the slot, to the bits of hit_in() of tiles.
+struct BlendTracer::Stretch {
+  double enter, exit;
+};
+
+namespace {
+
+// Where a line is between the planes of a slot along one axis: the numbers of walk.h.
+void clip_to_layer(int layer, float origin, float direction, float& begin, float& end) {
+  constexpr float planes[5] = {-2, -0.5F, 0, 0.5F, 2};
+  const float inverse = 1 / (std::fabs(direction) > 1e-20F ? direction : 1e-20F);
+  const float a = (planes[layer] - origin) * inverse, b = (planes[layer + 1] - origin) * inverse;
+  begin = std::max(begin, std::min(a, b));
+  end = std::min(end, std::max(a, b));
+}
+
+bool clip_to_slot(int slot, const LocalRay& ray, float& begin, float& end) {
+  const int layer[3] = {slot & 3, slot >> 2 & 3, slot >> 4};
+  for (int k = 0; k < 3; ++k) clip_to_layer(layer[k], ray.origin[k], ray.direction[k], begin, end);
+  return begin < end;
+}
+
+Box3 box_of(const Tile& tile, int slot) {
+  const Vec3d center = slot_center(tile.place().center, tile.place().half, slot);
+  const Vec3d h = Vec3d{1, 1, 1} * (tile.place().half / 4);
+  return {center - h, center + h};
+}
+
+}  // namespace
+
+std::optional<BlendTracer::Stretch> BlendTracer::stretch_in(const Tile& tile, const Ray& ray, bool any) const {
+  const TilePlace& place = tile.place();
+  if (place.parent != nullptr) return stretch_in(*place.parent, place.slot, ray, any);
+  const Vec3d& direction = ray.direction;
+  auto [enter, exit] = clip(tile.content_box(), ray, {1 / direction.x, 1 / direction.y, 1 / direction.z});
+  if (any) exit = std::min(exit, ray.t_max);
+  if (!(enter < exit)) return {};
+  return Stretch{enter, exit};
+}
+
+std::optional<BlendTracer::Stretch> BlendTracer::stretch_in(const Tile& tile, int slot, const Ray& ray,
+                                                            bool any) const {
+  const auto whole = stretch_in(tile, ray, any);
+  if (!whole) return {};
+  const RayInCube cube(ray, tile.place().center, tile.place().half);
+  const float first = cube.to_local(whole->enter);
+  float begin = first, end = cube.to_local(whole->exit);
+  if (tile.content().large_cells >> path_of(slot).outer & 1) {
+    Walk walk;
+    state_->kernels.walk(tile.content().slots_of_cell(slot), cube.local, begin, end, walk);
+    if (walk.count == 0) return {};
+    begin = walk.begin[0];
+    end = walk.end[walk.count - 1];
+  } else if (!clip_to_slot(slot, cube.local, begin, end)) {
+    return {};
+  }
+  return Stretch{begin <= first ? whole->enter : std::max(whole->enter, cube.to_world(begin)),
+                 std::min(whole->exit, cube.to_world(end))};
+}
+
+std::optional<CellHit> BlendTracer::first_hit(const TracePart& part, const Ray& ray, bool any, CellLog& log) const {
+  if (part.within == nullptr) return first_hit(part.tile, ray, any, log);
+  log.side = CellLog::Side::Unknown;
+  const auto stretch = stretch_in(*part.within, part.slot, ray, any);
+  if (!stretch) return {};
+  log.enter = stretch->enter;
+  const auto hit =
+      part.within->content().cells >> part.slot & 1
+          ? hit_in(*part.within, part.slot, ray, any, stretch->enter, stretch->exit, log)
+          : hit_in(state_->tree.child(*part.within, part.slot), ray, any, stretch->enter, stretch->exit, log);
+  if (log.side == CellLog::Side::Inside) return {};
+  return hit && hit->t <= ray.t_max ? hit : std::nullopt;
+}
+
+std::vector<TracePart> BlendTracer::parts() const {
+  std::vector<TracePart> parts;
+  for (std::size_t i = 0; i < tile_count(); ++i) {
+    const Tile* made = state_->tree.tile_if_made(i);
+    if (made == nullptr) parts.push_back({.tile = i, .within = nullptr, .slot = 0, .box = tile_box(i)});
+    else add_parts(i, *made, parts);
+  }
+  return parts;
+}
+
+void BlendTracer::add_parts(std::size_t tile, const Tile& within, std::vector<TracePart>& parts) const {
+  const TileContent& content = within.content();
+  for (std::uint64_t left = content.cells; left != 0; left &= left - 1) {
+    const int slot = std::countr_zero(left);
+    const Block* made = within.block(slot).peek();
+    const Box3 box = made != nullptr ? made->surface_box() : CellTree::cell(within, slot).box();
+    if (!box.empty()) parts.push_back({tile, &within, slot, box});
+  }
+  for (std::uint64_t left = content.tiles; left != 0; left &= left - 1) {
+    const int slot = std::countr_zero(left);
+    if (const Tile* made = within.child(slot).peek()) add_parts(tile, *made, parts);
+    else parts.push_back({tile, &within, slot, box_of(within, slot)});
+  }
+}
+
+}  // namespace marrow

@@ -1,0 +1,52 @@
+// The parts of solids under one Embree hierarchy.
+//
+// Embree only finds candidate boxes, in float; roots are found and compared in double. Boxes are padded by
+// 8 * 2^-24 * M, M the largest coordinate of boxes and ray origins, so that no rounding of the float traversal can
+// lose a box, on any instruction set; ray origins are moved up to the boxes' bounds to keep M its own size.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "field/base/result.h"
+#include "renderer/geometry/embree_handles.h"
+#include "renderer/geometry/solid.h"
+
+namespace marrow {
+
+/// Parts of one solid; it must outlive the hierarchy.
+struct PartsOfSolid {
+  const Solid* solid = nullptr;
+  std::vector<SolidPart> parts;
+  double padding = 0;  ///< of their boxes; set by the hierarchy
+};
+
+/// Safe to use from many threads.
+class PartHierarchy {
+ public:
+  static Result<std::unique_ptr<PartHierarchy>> make(RTCDeviceTy* device, std::vector<PartsOfSolid> solids);
+
+  struct Hit {
+    double t = std::numeric_limits<double>::infinity();
+    std::size_t solid = 0, element = 0;
+    const void* place = nullptr;                                 ///< null: no hit
+    double enter = 0;                                            ///< where the ray came into the part
+    double undecided = std::numeric_limits<double>::infinity();  ///< of any part that was visited
+    bool found = false, begins_inside = false;  ///< begins_inside: as in ElementLog; then the hit is not one
+  };
+  /// The smallest t wins; at equal t the lower solid, the lower element, the part entered first: the order of traversal
+  /// shows nowhere. `visits`, if any, is told of all parts visited.
+  Hit first_hit(const Ray&, std::vector<ElementLog>* visits) const;
+  bool occluded(const Ray&) const;
+  std::size_t part_count() const;
+
+ private:
+  explicit PartHierarchy(std::vector<PartsOfSolid> solids) : solids_(std::move(solids)) {}
+
+  std::vector<PartsOfSolid> solids_;
+  Box3 padded_bounds_;  // what rays are clipped to
+  EmbreeScene scene_;
+};
+
+}  // namespace marrow
