@@ -58,6 +58,8 @@ struct CellLog {
   std::uint32_t evaluations = 0;                               ///< of the field
   enum class Side { Unknown, Outside, Inside };
   Side side = Side::Unknown;  ///< where the ray was before what it meets next
+  /// For parts, which pass it on: a ray has been outside before it enters what lies from here on, which saves asking.
+  double outside_from = std::numeric_limits<double>::infinity();
 };
 
 struct SurfacePoint {

@@ -75,11 +75,15 @@ std::optional<CellHit> BlendTracer::first_hit(const TracePart& part, const Ray& 
   const auto stretch = stretch_in(*part.within, part.slot, ray, any);
   if (!stretch) return {};
   log.enter = stretch->enter;
+  if (stretch->enter >= log.outside_from) log.side = CellLog::Side::Outside;
   const auto hit =
       part.within->content().cells >> part.slot & 1
           ? hit_in(*part.within, part.slot, ray, any, stretch->enter, stretch->exit, log)
           : hit_in(state_->tree.child(*part.within, part.slot), ray, any, stretch->enter, stretch->exit, log);
   if (log.side == CellLog::Side::Inside) return {};
+  // Where the ray begins in this part, it begins outside.
+  if (log.side == CellLog::Side::Outside)
+    log.outside_from = std::min(log.outside_from, stretch->enter <= ray.t_min ? ray.t_min : stretch->exit);
   return hit && hit->t <= ray.t_max ? hit : std::nullopt;
 }
 

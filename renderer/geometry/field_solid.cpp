@@ -55,10 +55,12 @@ template <class Place>
 std::optional<double> FieldSolid::traced(const Place& place, const Ray& ray, bool any, ElementLog& log) const {
   const auto [local, stretch] = to_local(ray);
   CellLog cell;
+  cell.outside_from = log.outside_from * stretch;
   const auto found = tracer_->first_hit(place, local, any, cell);
   log = {.enter = cell.enter / stretch,
          .undecided = cell.undecided / stretch,
          .evaluations = cell.evaluations,
+         .outside_from = cell.outside_from / stretch,
          .begins_inside = cell.side == CellLog::Side::Inside};
   if (!found) return {};
   log.place = found->block;

@@ -16,12 +16,30 @@ namespace {
 
 // Rides with the ray through Embree and keeps everything in double.
 struct Query : RTCIntersectContext {
-  explicit Query(const Ray& r) : ray(r) { rtcInitIntersectContext(this); }
+  explicit Query(const Ray& r) : ray(r), inverse{1 / r.direction.x(), 1 / r.direction.y(), 1 / r.direction.z()} {
+    rtcInitIntersectContext(this);
+  }
   const Ray& ray;
+  Vec3d inverse;       // of the direction
   double t_start = 0;  // where Embree's ray begins on ours
   PartHierarchy::Hit best;
+  double outside_from = std::numeric_limits<double>::infinity();  // ElementLog's, of this solid
+  const Solid* outside_of = nullptr;
   std::vector<ElementLog>* visits = nullptr;
 };
+
+// Whether the ray comes into a box before t. Embree asks for all boxes of a leaf when it has met one; NaN, of a ray in
+// the plane of a face, counts as inside.
+bool enters(const Query& q, const Box3& box, double t) {
+  double enter = q.ray.t_min, exit = t;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double a = (box.lower[i] - q.ray.origin[i]) * q.inverse[i],
+                 b = (box.upper[i] - q.ray.origin[i]) * q.inverse[i];
+    enter = std::max(enter, std::min(a, b));
+    exit = std::min(exit, std::max(a, b));
+  }
+  return enter <= exit;
+}
 
 // Embree's t of a hit, never before the hit itself: a box that holds a nearer one must not be skipped.
 float embree_t(const Query& q, double t) {
@@ -35,7 +53,7 @@ float above(double v) { return std::nextafter(static_cast<float>(v), std::numeri
 
 void bounds_callback(const RTCBoundsFunctionArguments* a) {
   const PartsOfSolid& p = parts_of(a->geometryUserPtr);
-  const Box3 box = p.parts[a->primID].box.padded(p.padding);
+  const Box3& box = p.parts[a->primID].box;
   *a->bounds_o = {below(box.lower.x), below(box.lower.y), below(box.lower.z), 0,
                   above(box.upper.x), above(box.upper.y), above(box.upper.z), 0};
 }
@@ -47,9 +65,13 @@ void intersect_callback(const RTCIntersectFunctionNArguments* a) {
   auto& q = *static_cast<Query*>(a->context);
   const PartsOfSolid& solid = parts_of(a->geometryUserPtr);
   const SolidPart& part = solid.parts[a->primID];
+  if (!enters(q, part.box, q.best.t)) return;
   auto* rayhit = reinterpret_cast<RTCRayHit*>(a->rayhit);
   ElementLog log;
+  if (q.outside_of == solid.solid) log.outside_from = q.outside_from;
   const auto t = solid.solid->hit_in_part(part, q.ray, false, log);
+  q.outside_of = solid.solid;
+  q.outside_from = log.outside_from;
   if (q.visits != nullptr && log.evaluations > 0) q.visits->push_back(log);
   q.best.undecided = std::min(q.best.undecided, log.undecided);
   if (log.begins_inside) {
@@ -137,7 +159,7 @@ Result<std::unique_ptr<PartHierarchy>> PartHierarchy::make(RTCDeviceTy* device, 
   const double margin = bounds.empty() ? 0 : std::ldexp(8 * largest_coordinate(bounds), -24);
   h->padded_bounds_ = bounds.padded(margin);
   for (PartsOfSolid& s : h->solids_) {
-    s.padding = margin;
+    for (SolidPart& p : s.parts) p.box = p.box.padded(margin);
     attach(device, h->scene_.get(), s);
   }
   rtcCommitScene(h->scene_.get());

@@ -19,7 +19,6 @@ namespace marrow {
 struct PartsOfSolid {
   const Solid* solid = nullptr;
   std::vector<SolidPart> parts;
-  double padding = 0;  ///< of their boxes; set by the hierarchy
 };
 
 /// Safe to use from many threads.

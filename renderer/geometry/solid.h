@@ -19,8 +19,9 @@ struct ElementLog {
   double enter = 0;                                            ///< where the ray came into the element
   double undecided = std::numeric_limits<double>::infinity();  ///< the first place that could not be decided
   std::uint32_t evaluations = 0;
-  const void* place = nullptr;  ///< of a hit in the element, for describe()
-  bool begins_inside = false;   ///< of a part: the ray begins inside, and elements have to be asked instead
+  const void* place = nullptr;                                    ///< of a hit in the element, for describe()
+  double outside_from = std::numeric_limits<double>::infinity();  ///< CellLog's, from part to part of one solid
+  bool begins_inside = false;  ///< of a part: the ray begins inside, and elements have to be asked instead
 };
 
 /// A part of an element, as far as it is known where in the element surface can be.
