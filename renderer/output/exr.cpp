@@ -149,6 +149,7 @@ Result<Imf::Header> make_header(const Picture& picture, ExrColor color) {
   if (!date) return date.why();
   Imf::Header header(box_of(picture.display), box_of(picture.data));
   header.compression() = Imf::ZIP_COMPRESSION;
+  header.zipCompressionLevel() = 1;  // half the time of the default level, files 3 % larger
 
   bool has_color = false;
   for (const Channel& c : picture.channels) {

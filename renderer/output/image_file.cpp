@@ -10,19 +10,16 @@
 #include <span>
 #include <string_view>
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include "field/math/elementary.h"
 #include "renderer/output/atomic_file.h"
+#include "renderer/output/image_codecs.h"
 
 namespace marrow {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::int64_t most_pixels = std::int64_t{1} << 28;
 
 // ---- reading ----
 
@@ -39,14 +36,6 @@ std::optional<std::string> format_of(const fs::path& path) {
   for (const auto& [magic, name] : kinds)
     if (start.starts_with(magic)) return name;
   return {};
-}
-
-Status check(const OIIO::ImageSpec& spec) {
-  if (spec.deep || spec.depth > 1) return failure("only flat pictures are read");
-  if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0) return failure("the picture has no pixels");
-  if (std::int64_t{spec.width} * spec.height > most_pixels)
-    return failure(fmt::format("{} x {} pixels are more than 2^28", spec.width, spec.height));
-  return Done{};
 }
 
 // IEC 61966-2-1, the inverse of its transfer function.
@@ -76,20 +65,6 @@ Status check_finite(const RgbImage& image) {
   return d;
 }
 
-Result<RgbImage> decode(OIIO::ImageInput& input, const OIIO::ImageSpec& spec) {
-  if (Status fine = check(spec); !fine) return fine.why();
-  const int channels = spec.nchannels >= 3 ? 3 : 1;
-  std::vector<float> samples(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
-                             static_cast<std::size_t>(channels));
-  if (!input.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, samples.data()))
-    return failure("cannot read: " + input.geterror());
-  const bool encoded = spec.format == OIIO::TypeDesc::UINT8 || spec.format == OIIO::TypeDesc::UINT16;
-  if (encoded) std::transform(samples.begin(), samples.end(), samples.begin(), linear_from_srgb);
-  RgbImage image = three_channels(spec.width, spec.height, channels, std::move(samples));
-  if (Status fine = check_finite(image); !fine) return fine.why();
-  return image;
-}
-
 Result<RgbImage> open_and_decode(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -97,11 +72,15 @@ Result<RgbImage> open_and_decode(const fs::path& path) {
   if (!fs::is_regular_file(status)) return failure("not a regular file");
   const std::optional<std::string> format = format_of(path);
   if (!format) return failure("not an EXR, HDR, PNG, JPEG or TIFF file");
-  const auto input = OIIO::ImageInput::create(*format);
-  if (!input) return failure("cannot read " + *format + " files: " + OIIO::geterror());
-  OIIO::ImageSpec spec;
-  if (!input->open(path.string(), spec)) return failure("cannot open: " + input->geterror());
-  return decode(*input, spec);
+  const auto codecs = image_codecs();
+  if (!codecs) return codecs.why();
+  auto decoded = (*codecs)->decode(path.string(), *format);
+  if (!decoded) return decoded.why();
+  auto& samples = decoded->samples;
+  if (decoded->encoded) std::transform(samples.begin(), samples.end(), samples.begin(), linear_from_srgb);
+  RgbImage image = three_channels(decoded->width, decoded->height, decoded->channels, std::move(samples));
+  if (Status fine = check_finite(image); !fine) return fine.why();
+  return image;
 }
 
 // ---- writing ----
@@ -123,14 +102,17 @@ std::vector<Code> quantize(const RgbImage& image) {
   return codes;
 }
 
-OIIO::ImageSpec png_spec(const RgbImage& image, PngDepth depth,
-                         const std::vector<std::pair<std::string, std::string>>& text) {
-  OIIO::ImageSpec spec(image.width, image.height, 3,
-                       depth == PngDepth::Bits8 ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  spec.attribute("Software", "marrow " MARROW_VERSION);
-  for (const auto& [name, value] : text) spec.attribute(name, value);
-  return spec;
+Result<std::vector<unsigned char>> encoded_as_png(PngCodes codes, const RgbImage& image) {
+  const auto codecs = image_codecs();
+  if (!codecs) return codecs.why();
+  if (codes.bits == 8) {
+    const auto samples = quantize<std::uint8_t>(image);
+    codes.samples = samples.data();
+    return (*codecs)->encode_png(codes);
+  }
+  const auto samples = quantize<std::uint16_t>(image);
+  codes.samples = samples.data();
+  return (*codecs)->encode_png(codes);
 }
 
 }  // namespace
@@ -146,18 +128,15 @@ Result<RgbImage> read_rgb_image(const fs::path& path) {
 Status write_png(const fs::path& path, const RgbImage& image, PngDepth depth,
                  const std::vector<std::pair<std::string, std::string>>& text) {
   if (image.width <= 0 || image.height <= 0) return failure("the picture has no pixels", path.string());
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  const auto output = OIIO::ImageOutput::create("png");
-  if (!output) return failure("cannot write PNG files: " + OIIO::geterror(), path.string());
-  output->set_ioproxy(&memory);
-  const bool small = depth == PngDepth::Bits8;
-  const bool written = output->open("memory.png", png_spec(image, depth, text)) &&
-                       (small ? output->write_image(OIIO::TypeDesc::UINT8, quantize<std::uint8_t>(image).data())
-                              : output->write_image(OIIO::TypeDesc::UINT16, quantize<std::uint16_t>(image).data())) &&
-                       output->close();
-  if (!written) return failure("cannot encode as PNG: " + output->geterror(), path.string());
-  return write_file_atomically(path, std::as_bytes(std::span(bytes)));
+  PngCodes codes{.width = image.width, .height = image.height, .bits = static_cast<int>(depth), .text = text};
+  codes.text.insert(codes.text.begin(), {"Software", "marrow " MARROW_VERSION});
+  const auto bytes = encoded_as_png(std::move(codes), image);
+  if (!bytes) {
+    Diagnostics why = bytes.why();
+    for (Diagnostic& d : why) d.where.file = path.string();
+    return why;
+  }
+  return write_file_atomically(path, std::as_bytes(std::span(*bytes)));
 }
 
 }  // namespace marrow
