@@ -72,17 +72,22 @@ Jet<Interval, N> hull(const Jet<Interval, N>& a, const Jet<Interval, N>& b) {
   return r;
 }
 
-/// Anything from x on, with any slope.
+/// An enclosure of a number of which nothing is known but where it lies.
 template <Number X>
-X at_least(double x) {
-  const Interval above{x, std::numeric_limits<double>::infinity()};
+X any_slope(const Interval& values) {
   if constexpr (JetNumber<X>) {
-    X r(above);
+    X r(values);
     r.slope.fill(Interval::everything());
     return r;
   } else {
-    return above;
+    return values;
   }
+}
+
+/// Anything from x on, with any slope.
+template <Number X>
+X at_least(double x) {
+  return any_slope<X>({x, std::numeric_limits<double>::infinity()});
 }
 
 namespace number_detail {

@@ -22,11 +22,28 @@ concept Warp = requires(const Node& n, const Vec3<X>& p) {
   n.child_point(p);
 };
 
+/// A warp that takes some boxes to several places.
+template <class Node, class X>
+concept CutWarp = requires(const Node& n, const Vec3<X>& p, typename Node::template Sides<X>& places) {
+  n.sides(p, places);
+};
+
 template <Number X>
 bool misses(const Box3& box, const Vec3<X>& p) {
   for (std::size_t i = 0; i < 3; ++i)
     if (upper(p[i]) < box.lower[i] || lower(p[i]) > box.upper[i]) return true;
   return false;
+}
+
+/// The field of a warp from that of its child at each place.
+template <Number X>
+X of_all_sides(std::span<const X> places) {
+  X all = places[0];
+  if constexpr (is_enclosure<X>) {
+    if (places.size() > 1) all = any_slope<X>(value_of(all));
+    for (const X& place : places.subspan(1)) all = hull(all, place);
+  }
+  return all;
 }
 
 template <Number X>
@@ -35,7 +52,7 @@ X value_of_node(const TreeNode& node, const Vec3<X>& p, std::span<const X> child
       [&]<class Node>(const Node& n) -> X {
         if constexpr (std::same_as<Node, BlendLeaf>) return blend_value(*n.field, p);
         else if constexpr (Primitive<Node, X>) return n.value(p);
-        else if constexpr (Warp<Node, X>) return children[0];
+        else if constexpr (Warp<Node, X>) return of_all_sides(children);
         else return n.value(children);
       },
       node);
@@ -60,8 +77,27 @@ Vec3<X> point_of_children(const TreeNode& node, const Vec3<X>& p) {
       node);
 }
 
+/// Adds the further places of a child that stands behind a cut; returns where it is first.
+template <Number X>
+Vec3<X> points_of_children(const TreeNode& node, const Vec3<X>& p, std::vector<Vec3<X>>& further) {
+  return std::visit(
+      [&]<class Node>(const Node& n) -> Vec3<X> {
+        if constexpr (CutWarp<Node, X>) {
+          typename Node::template Sides<X> places;
+          if (const std::size_t count = n.sides(p, places); count > 0) {
+            further.insert(further.end(), places.begin() + 1, places.begin() + static_cast<std::ptrdiff_t>(count));
+            return places[0];
+          }
+        }
+        if constexpr (Warp<Node, X>) return n.child_point(p);
+        else return p;
+      },
+      node);
+}
+
 /// Calls visit(record index, p, values of its children) -> value for `start` and every node below that p's support test
-/// leaves, children first; `none` stands for the others. The stacks are kept between calls.
+/// leaves, children first; `none` stands for the others. A child behind a cut has a value for each of its places, where
+/// values are numbers. The stacks are kept between calls.
 template <Number X, class Value>
 class Machine {
  public:
@@ -69,6 +105,7 @@ class Machine {
   Value run(const FieldTree& tree, std::uint32_t start, const Vec3<X>& p, const Value& none, const Visit& visit) {
     frames_.clear();
     values_.clear();
+    further_.clear();
     if (tree.records().empty()) return none;
     enter(tree, start == FieldTree::whole ? tree.root() : start, p, none);
     while (!frames_.empty()) {
@@ -78,6 +115,12 @@ class Machine {
         const std::uint32_t child = tree.children(record)[top.next++];
         const Vec3<X> at = top.inner;
         enter(tree, child, at, none);
+        continue;
+      }
+      if (further_.size() > top.further) {  // the same child at its next place
+        const Vec3<X> at = further_.back();
+        further_.pop_back();
+        enter(tree, tree.children(record)[0], at, none);
         continue;
       }
       const std::span<const Value> children = std::span(values_).subspan(top.values);
@@ -92,17 +135,25 @@ class Machine {
  private:
   struct Frame {
     std::uint32_t record, next;
-    std::size_t values;
-    Vec3<X> outer, inner;  // p in the node's coordinates and in its children's
+    std::size_t values, further;  // how much of the stacks belongs to those above
+    Vec3<X> outer, inner;         // p in the node's coordinates and in its children's
   };
   void enter(const FieldTree& tree, std::uint32_t index, const Vec3<X>& p, const Value& none) {
     const FieldTree::Record& record = tree.records()[index];
-    if (misses(record.support, p)) values_.push_back(none);
-    else frames_.push_back({index, 0, values_.size(), p, point_of_children(tree.node(record), p)});
+    if (misses(record.support, p)) {
+      values_.push_back(none);
+      return;
+    }
+    const std::size_t further = further_.size();
+    Vec3<X> inner;
+    if constexpr (std::same_as<X, Value>) inner = points_of_children(tree.node(record), p, further_);
+    else inner = point_of_children(tree.node(record), p);
+    frames_.push_back({index, 0, values_.size(), further, p, inner});
   }
 
   std::vector<Frame> frames_;
   std::vector<Value> values_;
+  std::vector<Vec3<X>> further_;
 };
 
 }  // namespace marrow::tree

@@ -136,6 +136,39 @@ TEST(TreeTracer, NeverComesAfterWhatSamplingFindsAndAlwaysLiesOnTheSurface) {
   EXPECT_LE(undecided, 5);
 }
 
+// A bend cuts space behind the centre of its circle: rays across the cut are decided all the same.
+TEST(TreeTracer, DecidesRaysAcrossACut) {
+  Random random(43);
+  int hits = 0, rays = 0;
+  for (int scene = 0; scene < 12; ++scene) {
+    FieldDescription field;
+    const FieldNodeId bar =
+        field.add({.what = GeneralNode{.node = boxed(Box{.size = {0.5, 3, 0.5}, .rounding = 0.05, .potential = {}}),
+                                       .of = {},
+                                       .material = {}},
+                   .where = {}});
+    const Bend bend{.length = random.between(1, 3), .angle = random.between(1, 6)};
+    field.root = field.add({.what = GeneralNode{.node = boxed(bend), .of = {bar}, .material = {}}, .where = {}});
+    const auto program = compile(field);
+    ASSERT_TRUE(program) << program.why()[0].message;
+    const auto tracer = TreeTracer::make(program->trees()[0]);
+    ASSERT_TRUE(tracer) << tracer.why()[0].message;
+    const double radius = bend.length / bend.angle;
+    for (int i = 0; i < 100; ++i, ++rays) {
+      const Vec3d from = normalize(random.vector(1)) * 8.0;
+      const Vec3d behind{radius + random.between(0, 2), random.between(-0.1, 0.1), random.between(-0.3, 0.3)};
+      const Ray ray{.origin = from, .direction = normalize(behind - from)};
+      const CrossingSearch found = traced(*tracer, ray);
+      EXPECT_GT(found.undecided, 1e300) << "scene " << scene << " ray " << i;
+      const auto expected = sampled(program->trees()[0], ray, 16);
+      if (expected) { EXPECT_TRUE(found.t && *found.t <= expected->hi + 1e-9) << "scene " << scene << " ray " << i; }
+      hits += found.t.has_value();
+    }
+  }
+  EXPECT_GT(hits, rays / 20);
+  EXPECT_LT(hits, rays);
+}
+
 TEST(TreeTracer, SpawnedPointsLieOutside) {
   Random random(43);
   int hits = 0;

@@ -1,4 +1,5 @@
 // Warps: inverses of the deformations they are named for, supports, enclosures.
+#include <algorithm>
 #include <numbers>
 
 #include "field/tree/nodes/bend.h"
@@ -99,6 +100,40 @@ TEST(Warps, BendMakesAnArc) {
   expect_near(half.child_point(Vec3d{radius + 0.5, radius, 0}), {0, 1.5, 0});
   expect_near(half.child_point(Vec3d{radius + 0.5, radius + 0.1, 0}), {-0.1, 1.5, 0});
   expect_near(half.child_point(Vec3d{radius + 0.5, -radius, 0}), {0, -1.5, 0});
+}
+
+// Behind the centre of the circle a box holds what belongs to both ends: small places each, not all that lies between.
+TEST(Warps, BendTakesABoxOnItsCutToBothSides) {
+  test::Random random(77);
+  int cut = 0;
+  for (int scene = 0; scene < 4000; ++scene) {
+    const Bend warp{.center = random.vector(1),
+                    .axis = UnitVec3::unchecked({0, 1, 0}),
+                    .length = random.between(0.5, 3),
+                    .angle = (scene % 7 == 0 ? 360 : random.between(5, 360)) * deg};
+    const double radius = warp.length / warp.angle, away = radius * random.between(0, 2), size = 0.1 * radius;
+    const Vec3d middle = warp.center + Vec3d{radius + away, random.between(-size, size), random.between(-1, 1)};
+    const Vec3d half{random.between(0, size), random.between(0, size), random.between(0, size)};
+    const auto side = [&](std::size_t i) { return Interval(middle[i] - half[i], middle[i] + half[i]); };
+    const Vec3<Interval> box{side(0), side(1), side(2)};
+    Bend::Sides<Interval> places;
+    const std::size_t count = warp.sides(box, places);
+    cut += count > 0;
+    for (int i = 0; i < 20 && count > 0; ++i) {
+      const Vec3d child =
+          warp.child_point(middle + Vec3d{half.x * random.between(-1, 1), half.y * random.between(-1, 1),
+                                          half.z * random.between(-1, 1)});
+      const auto holds = [&](const Vec3<Interval>& place) {
+        return place.x.contains(child.x) && place.y.contains(child.y) && place.z.contains(child.z);
+      };
+      EXPECT_TRUE(std::any_of(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(count), holds))
+          << "seed 77, scene " << scene;
+    }
+    if (away < 3 * size) continue;  // at the centre of the circle all of the arc is near
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(places[i][k].hi - places[i][k].lo, 8 * size) << "scene " << scene;
+  }
+  EXPECT_GT(cut, 1000);
 }
 
 }  // namespace

@@ -30,4 +30,11 @@ Interval Bend::angle_over(const Interval& y, const Interval& x) {
   return clamped(all, {-most, most});
 }
 
+// Of the corner that is farthest from the cut.
+double Bend::least_angle_at_cut(const Interval& y, const Interval& x) {
+  if (!(x.hi < 0)) return 0;
+  const double off = std::max(-y.lo, y.hi);
+  return std::max(0.0, std::numbers::pi - marrow::atan(off / -x.hi) - 1e-14);
+}
+
 }  // namespace marrow

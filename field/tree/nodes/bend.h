@@ -1,6 +1,7 @@
 // Bends space in a plane.
 #pragma once
 
+#include <array>
 #include <numbers>
 #include <string>
 
@@ -37,21 +38,69 @@ struct Bend {
   template <Number X>
   Vec3<X> child_point(const Vec3<X>& p) const {
     if (!(radius() < flat * length)) return p;
-    const Vec3<X> y = constant<X>(axis), z = constant<X>(normalize(across())), v = p - constant<X>(center);
-    const X along = dot(v, y), height = dot(v, z), below = X(radius()) - height;
-    const X at = angle_of(along, below), r = sqrt(square(along) + square(below));
+    const Polar<X> polar(*this, p);
+    const X at = angle_of(polar.along, polar.below);
     const X straight = in_three(
-        at, [&](double end) { return X(radius() * end) + (along * X(cos(end)) - below * X(sin(end))); },
-        [&](const X& between) { return X(radius()) * between; });
+        at, [&](double end) { return polar.straight_at_end(end); },
+        [&](const X& between) { return X(polar.radius) * between; });
     const X over = in_three(
-        at, [&](double end) { return X(radius()) - (along * X(sin(end)) + below * X(cos(end))); },
-        [&](const X&) { return X(radius()) - r; });
-    return p + y * (straight - along) + z * (over - height);
+        at, [&](double end) { return polar.over_at_end(end); }, [&](const X&) { return polar.over_between(); });
+    return polar.child(p, straight, over);
+  }
+
+  static constexpr std::size_t most_sides = 4;
+  template <class X>
+  using Sides = std::array<Vec3<X>, most_sides>;
+
+  /// Over a box that the cut runs through the child is met in several places: behind each end of the arc, and in front
+  /// of the arc on either side. Returns their number, or 0 where space is whole. Their hull would hold all of the
+  /// child.
+  template <Number X>
+  std::size_t sides(const Vec3<X>& p, Sides<X>& places) const {
+    if constexpr (is_enclosure<X>) {
+      if (!(radius() < flat * length)) return 0;
+      const Polar<X> polar(*this, p);
+      const Interval y = value_of(polar.along), x = value_of(polar.below);
+      if (!is_cut(y, x)) return 0;
+      const double half = angle / 2, least = least_angle_at_cut(y, x);
+      std::size_t count = 0;
+      for (const double sign : {-1.0, 1.0}) {
+        places[count++] = polar.child(p, polar.straight_at_end(sign * half), polar.over_at_end(sign * half));
+        if (!(least <= half)) continue;
+        const X at = any_slope<X>(hull(Interval(sign * least), Interval(sign * half)));
+        places[count++] = polar.child(p, X(polar.radius) * at, polar.over_between());
+      }
+      return count;
+    } else {
+      return 0;
+    }
   }
 
  private:
   // A radius this many lengths long bends by less than 1e-8 degrees.
   static constexpr double flat = 1e10;
+
+  // A point in the plane of the arc, seen from its centre, and where parts of that plane come from.
+  template <Number X>
+  struct Polar {
+    double radius;
+    Vec3<X> y, z;
+    X along, height, below;
+
+    Polar(const Bend& bend, const Vec3<X>& p)
+        : radius(bend.radius()), y(constant<X>(bend.axis)), z(constant<X>(normalize(bend.across()))) {
+      const Vec3<X> v = p - constant<X>(bend.center);
+      along = dot(v, y);
+      height = dot(v, z);
+      below = X(radius) - height;
+    }
+    X straight_at_end(double end) const { return X(radius * end) + (along * X(cos(end)) - below * X(sin(end))); }
+    X over_at_end(double end) const { return X(radius) - (along * X(sin(end)) + below * X(cos(end))); }
+    X over_between() const { return X(radius) - sqrt(square(along) + square(below)); }
+    Vec3<X> child(const Vec3<X>& p, const X& straight, const X& over) const {
+      return p + y * (straight - along) + z * (over - height);
+    }
+  };
 
   Vec3d across() const { return toward.vec() - axis * dot(axis, toward); }
   double radius() const { return angle > 0 ? length / angle : Box3::inf; }
@@ -83,6 +132,8 @@ struct Bend {
           is_cut(y.value, x.value) ? Interval::everything() : (x.value / r2) * y.slope[i] - (y.value / r2) * x.slope[i];
     return at;
   }
+  /// Of |angle|, in a box that the cut runs through.
+  static double least_angle_at_cut(const Interval& y, const Interval& x);
   /// Whether the angle jumps within a box.
   static bool is_cut(const Interval& y, const Interval& x) { return y.contains(0) && x.lo <= 0; }
 };
