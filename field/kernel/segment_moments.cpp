@@ -131,6 +131,7 @@ class RadiusPower {
       factor *= view.slope * (exponent - k) / (k + 1);
     }
   }
+  int degree() const { return last_; }
   // The integral of tau^e t^j d^-m.
   double moment(const PowerIntegrals& J, int j, int m) const {
     double sum = 0;
@@ -161,8 +162,9 @@ SegmentMoments segment_moments_by_panels(const SegmentView& view, int n, int dim
 
 template <Derivatives Order>
 SegmentMoments segment_moments_by_recurrence(const SegmentView& view, int n, int dimension) {
-  const PowerIntegrals J(view.t1, view.t2, view.h_squared, Order == Derivatives::Second ? n + 4 : n + 2);
   const RadiusPower plain(view, n - dimension), raised(view, n - dimension + 1);
+  const PowerIntegrals J(view.t1, view.t2, view.h_squared, Order == Derivatives::Second ? n + 4 : n + 2, n,
+                         raised.degree());
   SegmentMoments sum;
   sum.value = plain.moment(J, 0, n);
   if constexpr (Order >= Derivatives::First)

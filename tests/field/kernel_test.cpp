@@ -51,9 +51,11 @@ TEST(PowerIntegrals, AgreeWithQuadrature) {
   for (int i = 0; i < 60; ++i) {
     const double t1 = -random.between(0.2, 1), t2 = random.between(0.2, 1), h2 = random.between(0.4, 1);
     for (const int max_m : {8, 9}) {
-      const PowerIntegrals J(t1, t2, h2, max_m);
-      for (int m = max_m % 2 == 0 ? 2 : 1; m <= max_m; m += 2)
-        for (int j = 0; j <= m; ++j) {
+      const int n = max_m - 4, power = random.whole(0, n);
+      const PowerIntegrals J(t1, t2, h2, max_m, n, power);
+      EXPECT_EQ(J.j_of(n + 4), power + 2);
+      for (int m = n; m <= max_m; m += 2)
+        for (int j = 0; j <= std::min(m, J.j_of(m)); ++j) {
           double integral = 0;
           for (int panel = 0; panel < 8; ++panel)
             for (std::size_t k = 0; k < 20; ++k) {
