@@ -50,7 +50,8 @@ Result<std::unique_ptr<EmbreeSurfaces>> EmbreeSurfaces::make(std::vector<PlacedS
   }
   auto whole = PartHierarchy::make(s->device_.get(), std::move(elements));
   if (!whole) return whole.why();
-  s->finest_ = s->hierarchies_.emplace_back(std::move(*whole)).get();
+  s->whole_ = std::move(*whole);
+  s->finest_ = s->whole_.get();
   return s;
 }
 
@@ -69,7 +70,7 @@ void EmbreeSurfaces::refine() const {
   if (division.is_like(division_)) return;
   division_ = division;
   auto finer = PartHierarchy::make(device_.get(), std::move(solids));
-  if (finer) finest_ = hierarchies_.emplace_back(std::move(*finer)).get();
+  if (finer) finest_ = refined_.emplace_back(std::move(*finer)).get();
 }
 
 const PlacedPlane* EmbreeSurfaces::nearest_plane(const Ray& ray, double& t) const {
@@ -123,7 +124,7 @@ std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray) const {
   const PlacedPlane* plane = nearest_plane(ray, plane_t);
   const Ray before_plane = until(ray, plane_t);
   PartHierarchy::Hit found = finest().first_hit(before_plane, nullptr);
-  if (found.begins_inside) found = hierarchies_.front()->first_hit(before_plane, nullptr);
+  if (found.begins_inside) found = whole_->first_hit(before_plane, nullptr);
   return hit_of(found, plane, plane_t, ray);
 }
 
@@ -132,7 +133,7 @@ std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray, RayRecord& r
   visits.clear();
   double plane_t = infinity;
   const PlacedPlane* plane = nearest_plane(ray, plane_t);
-  const PartHierarchy::Hit found = hierarchies_.front()->first_hit(until(ray, plane_t), &visits);
+  const PartHierarchy::Hit found = whole_->first_hit(until(ray, plane_t), &visits);
   record = record_of(visits, found.undecided, std::min(found.t, plane_t));
   return hit_of(found, plane, plane_t, ray);
 }

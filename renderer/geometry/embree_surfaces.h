@@ -60,8 +60,9 @@ class EmbreeSurfaces final : public Surfaces {
   std::vector<PlacedPlane> planes_;
   Box3 extent_;  // of all solids
   EmbreeDevice device_;
-  // Of whole elements, then finer ones. All stay, since rays may be under way in them.
-  mutable std::vector<std::unique_ptr<const PartHierarchy>> hierarchies_;
+  std::unique_ptr<const PartHierarchy> whole_;  // of whole elements
+  // All stay, since rays may be under way in them.
+  mutable std::vector<std::unique_ptr<const PartHierarchy>> refined_;
   mutable std::atomic<const PartHierarchy*> finest_ = nullptr;
   mutable std::mutex refining_;
   mutable Division division_;  // of the finest

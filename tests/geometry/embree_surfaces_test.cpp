@@ -2,7 +2,9 @@
 #include "renderer/geometry/embree_surfaces.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -174,6 +176,33 @@ TEST(EmbreeSurfaces, LosesNoRayAlongTheFacesOfFlatBoxes) {
   std::cout << "  " << rays << " rays along edges, " << hits << " hits, lost " << lost << '\n';
   EXPECT_GT(hits, rays / 10);
   EXPECT_EQ(lost, 0);
+}
+
+// Answers are the same before, after and while surfaces are refined, also of rays that begin inside.
+TEST(EmbreeSurfaces, AreRefinedWhileRaysAreUnderWay) {
+  Random random(107);
+  const BlendField blend = random_scene(random, {4, contact_alpha(4)}, 5);
+  const SolidScene scene({placed(blend)});
+  std::atomic<bool> done = false;
+  std::thread refining([&] {
+    while (!done) scene.surfaces().refine();
+  });
+  int hits = 0, inside = 0, differ = 0;
+  for (int i = 0; i < 6000; ++i) {
+    Ray ray = any_ray(random, blend);
+    if (i % 3 == 0) ray.origin = random.vector(1.5);
+    inside += scene.value(ray.origin) >= 1;
+    RayRecord record;
+    const auto elements = scene.surfaces().first_hit(ray, record), parts = scene.surfaces().first_hit(ray);
+    hits += elements.has_value();
+    differ += elements.has_value() != parts.has_value() ||
+              (elements && (elements->t != parts->t || !(elements->outside == parts->outside)));
+  }
+  done = true;
+  refining.join();
+  EXPECT_EQ(differ, 0);
+  EXPECT_GT(hits, 1000);
+  EXPECT_GT(inside, 20);
 }
 
 TEST(EmbreeSurfaces, OfNothingHitsNothing) {
