@@ -32,16 +32,16 @@ BoundedCurve::BoundedCurve(const Kernel& kernel) {
     g_0_ = (n + 1) * f_max_ / shape;
   }
   v_top_ = e_ / (e_ + 1.0);
-  f_top_ = f_max_ * pow(v_top_, p_);
+  f_top_ = field_at(v_top_);
   g_top_ = height_at(v_top_);
 }
 
 double BoundedCurve::parameter(double f) const { return std::min(1.0, pow(f / f_max_, 1 / p_)); }
 
-double BoundedCurve::height_at(double v) const {
-  const double power = integer_power(v, e_ / 2);
-  return g_0_ * std::sqrt(1 - v) * (e_ % 2 == 0 ? power : power * std::sqrt(v));
-}
+// p is half of a whole number, as e / 2 is.
+double BoundedCurve::field_at(double v) const { return f_max_ * half_power(v, static_cast<int>(2 * p_)); }
+
+double BoundedCurve::height_at(double v) const { return g_0_ * std::sqrt(1 - v) * half_power(v, e_); }
 
 double BoundedCurve::at(double f) const { return f < f_top_ ? std::min(g_top_, height_at(parameter(f))) : g_top_; }
 
@@ -67,7 +67,7 @@ double BoundedCurve::inverse(double G) const {
     if (!(next - v > epsilon * v)) break;
     v = next;
   }
-  return f_max_ * pow(v, p_);
+  return field_at(v);
 }
 
 // With L = ln(v_H / v_f): x_H / f = e^(pL) and G / g(f) = e^(eL/2) sqrt((1-v_H)/(1-v_f)), both differences by expm1.
@@ -85,16 +85,16 @@ double BoundedCurve::on_line(double c, double s, double height) const {
   if (!(height < g_top_ * c + f_top_ * s)) return s > 0 ? std::max(f_top_, (height - g_top_ * c) / s) : f_top_;
   double low = 0, high = v_top_, v = parameter(std::min(f_top_, height / (s + c * g_top_ / f_top_)));
   for (int step = 0; step < max_steps; ++step) {
-    const double f = f_max_ * pow(v, p_), g = height_at(v);
+    const double f = field_at(v), g = height_at(v);
     const double excess = g * c + f * s - height;
     (excess < 0 ? low : high) = v;
     const double slope = (c * g * (e_ - v / (1 - v)) / 2 + s * p_ * f) / v;
     double next = v - excess / slope;
     if (!(next > low && next < high)) next = low + (high - low) / 2;
-    if (std::fabs(next - v) <= 2 * epsilon * v || !(high - low > 2 * epsilon * high)) return f_max_ * pow(next, p_);
+    if (std::fabs(next - v) <= 2 * epsilon * v || !(high - low > 2 * epsilon * high)) return field_at(next);
     v = next;
   }
-  return f_max_ * pow(v, p_);
+  return field_at(v);
 }
 
 }  // namespace marrow

@@ -39,6 +39,7 @@ class BoundedCurve {
 
  private:
   double parameter(double f) const;
+  double field_at(double v) const;
   double height_at(double v) const;
 
   int e_;

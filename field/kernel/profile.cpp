@@ -10,13 +10,6 @@
 namespace marrow {
 namespace {
 
-// x^(m/2) for m >= -2
-double half_power(double x, int m) {
-  if (m < 0) return 1 / (m == -1 ? std::sqrt(x) : x);
-  const double whole = integer_power(x, m / 2);
-  return m % 2 == 0 ? whole : whole * std::sqrt(x);
-}
-
 double inverse_normalisation(int m, int dimension) {
   if (dimension == 0) return 1;
   return dimension == 1 ? curve_normalisation(m) : 2 * std::numbers::pi / (m - 2);

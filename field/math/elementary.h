@@ -3,6 +3,8 @@
 //. sqrt is exact by IEEE 754 and comes from <cmath>.
 #pragma once
 
+#include <cmath>
+
 namespace marrow {
 
 double sin(double);
@@ -34,6 +36,13 @@ constexpr double integer_power(double base, int exponent) {
   for (; exponent > 0; exponent >>= 1, base *= base)
     if (exponent & 1) result *= base;
   return result;
+}
+
+/// base^(twice / 2) for a whole `twice` >= -2, base > 0 where it is negative.
+inline double half_power(double base, int twice) {
+  if (twice < 0) return 1 / (twice == -1 ? std::sqrt(base) : base);
+  const double whole = integer_power(base, twice / 2);
+  return twice % 2 == 0 ? whole : whole * std::sqrt(base);
 }
 
 }  // namespace marrow
