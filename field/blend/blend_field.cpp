@@ -142,17 +142,24 @@ std::string untraceable_part(const BlendField& blend) {
   return blend.alpha_varies() ? untraceable_angles(blend) : std::string{};
 }
 
-MaterialId strongest_material(const BlendField& blend, const Vec3d& p) {
-  MaterialId strongest;
-  if (!has_materials(blend)) return strongest;
-  double largest = -1;
+MaterialWeights material_weights(const BlendField& blend, const Vec3d& p) {
+  MaterialWeights all;
+  double sum = 0;
+  std::optional<MaterialId> touched;
   for_each_primitive<Derivatives::ScaleInvariant>(blend, p,
                                                   [&](const SkeletonSample& s, const auto& list, std::size_t i) {
-                                                    if (s.value <= largest) return;
-                                                    largest = s.value;
-                                                    strongest = list.material(i);
+                                                    if (!(s.value > 0)) return;
+                                                    if (std::isinf(s.value) && !touched) touched = list.material(i);
+                                                    sum += s.value;
+                                                    add_weight(all, list.material(i), s.value);
                                                   });
-  return strongest;
+  if (touched) return {{*touched, 1}};
+  for (MaterialWeight& w : all) w.weight /= sum;
+  return all;
+}
+
+MaterialId strongest_material(const BlendField& blend, const Vec3d& p) {
+  return has_materials(blend) ? strongest(material_weights(blend, p)) : MaterialId{};
 }
 
 Box3 skeleton_bounds(const BlendField& blend) {

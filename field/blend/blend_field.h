@@ -12,6 +12,7 @@
 #include "field/blend/alpha_sample.h"
 #include "field/blend/correction.h"
 #include "field/blend/directional_alpha.h"
+#include "field/blend/material_weights.h"
 #include "field/description/field_node.h"
 #include "field/math/box3.h"
 #include "field/skeleton/skeleton_sample.h"
@@ -125,7 +126,10 @@ std::optional<double> single_angle(const BlendField&);
 /// of general trees takes any blend.
 std::string untraceable_part(const BlendField&);
 
-/// Material of the primitive with the largest f_i at p; invalid means the object's own.
+/// w_i = f_i / sum f_j, summed over the primitives of each material, so that it does not matter how a skeleton is cut.
+/// On a skeleton its own alone.   [physics 2.3]
+MaterialWeights material_weights(const BlendField&, const Vec3d& p);
+/// The material with the largest weight at p; invalid means the object's own.
 MaterialId strongest_material(const BlendField&, const Vec3d& p);
 
 /// Bounds of the skeletons themselves, without radii. Empty for a blend without primitives.

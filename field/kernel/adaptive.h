@@ -11,12 +11,12 @@ namespace marrow {
 
 /// The integral of a sum over [begin, end]: visit(x, weight, sum) adds a node, Sum is zero when made and has += and a
 /// value, and agree(coarse, fine, all) says whether the whole of a panel and its two halves are near enough, `all`
-/// being the larger of a first estimate of the integral and what has been gathered. Starts with eight panels. For
+/// being the larger of a first estimate of the integral and what has been gathered. Starts with two panels. For
 /// integrands with kinks at unknown places: a panel with a kink is given up after 40 halvings, 1e-12 of the interval,
 /// and all panels after 2000 of them, when rounding is what keeps estimates apart.
 template <class Sum, class Visit, class Agree>
 Sum integrate_adaptively(double begin, double end, const Visit& visit, const Agree& agree) {
-  constexpr std::size_t first_panels = 8, deepest = 40, most_panels = 2000;
+  constexpr std::size_t first_panels = 2, deepest = 40, most_panels = 2000;
   struct Piece {
     double begin, length;
     Sum whole;

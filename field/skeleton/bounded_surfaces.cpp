@@ -13,12 +13,23 @@ SkeletonSample arc_field(const ArcSkeleton& arc, const Vec3d& p, const Kernel& k
       });
 }
 
+// The compact kernel of degree 2 has a slope of -1/R^2 up to its edge and none beyond, so that the integral of grad_S
+// changes with p by what the moving edge takes in, too: grad_S there times -dt/dp = 2 v / |dE/dt|.
 template <Derivatives Order>
 SkeletonSample triangle_field(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
   const Profile profile(kernel, 2);
+  const bool has_steep_edge =
+      Order >= Derivatives::Second && kernel.family == KernelFamily::Compact && profile.degree() == 2;
   return integrate_triangle<SkeletonSample>(
-      triangle, p, kernel, [&](const Vec3d& v, double tau, double weight, SkeletonSample& sum) {
+      triangle, p, kernel,
+      [&](const Vec3d& v, double tau, double weight, SkeletonSample& sum) {
         add_source<Order>(profile, v, tau, weight / (profile.normalisation() * tau * tau), sum);
+      },
+      [&](const Vec3d& v, double tau, double weight, SkeletonSample& sum) {
+        if (!has_steep_edge) return;
+        const double slope = -1 / (kernel.shape * kernel.shape);
+        const double k = 2 * weight * slope / (profile.normalisation() * tau * tau * tau);
+        sum.si_jacobian += Matrix3::outer(v, v) * (-2 * k);
       });
 }
 

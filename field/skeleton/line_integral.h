@@ -95,6 +95,17 @@ void integrate_compact(const Line& line, const Kernel& kernel, const Visit& visi
   beyond_root(line, root, visit);
 }
 
+/// Calls visit(t, |dE/dt|) where the edge of a compact support cuts the line: E = d^2 - R^2 tau^2 = A t^2 + 2 B t + C.
+template <class Visit>
+void for_each_edge(const Line& line, double R, const Visit& visit) {
+  const double R2 = R * R, A = 1 - R2 * line.slope * line.slope, B = -R2 * line.slope * line.at_foot;
+  const double C = line.h_squared - R2 * line.at_foot * line.at_foot, discriminant = B * B - A * C;
+  if (!(discriminant > 0)) return;
+  const double root_of = std::sqrt(discriminant), q = -B - std::copysign(root_of, B);
+  for (const double t : {C / q, q / A})
+    if (t > line.t1 && t < line.t2 && line.at_foot + line.slope * t > 0) visit(t, 2 * root_of);
+}
+
 // t^2 + h^2 = 0.
 template <class Visit>
 void integrate_inverse(const Line& line, const Kernel& kernel, const Visit& visit) {

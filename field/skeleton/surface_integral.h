@@ -10,6 +10,7 @@
 #include "field/kernel/adaptive.h"
 #include "field/skeleton/arc_view.h"
 #include "field/skeleton/line_integral.h"
+#include "field/skeleton/support_edge.h"
 #include "field/skeleton/triangle_view.h"
 
 namespace marrow {
@@ -62,15 +63,18 @@ Sum integrate_cauchy_arc(const ArcView& v, const CauchyPanels& limits, const Vis
 // Within the reach of a compact kernel, from the nearest place outward, so that small angles keep their digits; that
 // place may also be a turn away.
 template <class Sum, class Visit>
-Sum integrate_compact_arc(const ArcView& v, double within, const Visit& visit) {
+Sum integrate_compact_arc(const ArcView& v, const ArcSkeleton& arc, double R, double within, const Visit& visit) {
+  const double slope = (arc.radius_to - arc.radius_from) / (v.end - v.begin);
   Sum sum;
   for (const double turn : {-2 * std::numbers::pi, 0.0, 2 * std::numbers::pi})
     for (const double side : {-1.0, 1.0}) {
       const double first = side > 0 ? v.begin - turn : turn - v.end, last = side > 0 ? v.end - turn : turn - v.begin;
       const double near = std::max(0.0, first), far = std::min(within, last);
       if (!(near < far)) continue;
-      sum += integrate_adaptively<Sum>(
-          near, far, [&](double angle, double weight, Sum& part) { visit(side * angle, turn, weight, part); }, agree);
+      const double tau = arc.radius_from + slope * (turn - v.begin);
+      sum += integrate_between<Sum>(
+          edges_on_arc(v, tau, side * slope, R, near, far),
+          [&](double angle, double weight, Sum& part) { visit(side * angle, turn, weight, part); }, agree);
     }
   return sum;
 }
@@ -108,7 +112,8 @@ Sum integrate_compact_lines(const TriangleView& v, const Kernel& kernel, const V
   if (!(std::fabs(v.p_normal) < reach)) return {};
   const double width = std::sqrt((reach - v.p_normal) * (reach + v.p_normal));
   const double begin = std::max(-v.p_w, -width), end = std::min(v.apex_w - v.p_w, width);
-  return begin < end ? integrate_adaptively<Sum>(begin, end, visit, agree) : Sum{};
+  if (!(begin < end)) return {};
+  return integrate_between<Sum>(edges_on_lines(v, kernel.shape, begin, end), visit, agree);
 }
 
 template <class Sum, class Visit>
@@ -140,12 +145,15 @@ Sum integrate_arc(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel, 
     return integrate_cauchy_arc<Sum>(
         v, cauchy_panels(std::min(arc.radius_from, arc.radius_to), tau_slope, kernel.shape), at);
   const double within = angle_within(v, kernel.shape * std::max(arc.radius_from, arc.radius_to));
-  return within < 0 ? Sum{} : integrate_compact_arc<Sum>(v, within, at);
+  return within < 0 ? Sum{} : integrate_compact_arc<Sum>(v, arc, kernel.shape, within, at);
 }
 
-/// The same over a triangle. Precondition: p is not on the triangle under the inverse kernel.
-template <class Sum, class Visit>
-Sum integrate_triangle(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel, const Visit& visit) {
+/// The same over a triangle, and visit_edge(v, tau, weight, sum) for nodes along the edge of a compact support, with
+/// weights over |dE/dt|, E = d^2 - R^2 tau^2 along the node's line.
+/// Precondition: p is not on the triangle under the inverse kernel.
+template <class Sum, class Visit, class VisitEdge>
+Sum integrate_triangle(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel, const Visit& visit,
+                       const VisitEdge& visit_edge) {
   using namespace surface_integral;
   bool foot_is_inside = false;
   const TriangleView v = best_view(triangle, p, foot_is_inside);
@@ -155,13 +163,20 @@ Sum integrate_triangle(const TriangleSkeleton& triangle, const Vec3d& p, const K
     const Line line{seen.t1, seen.t2, seen.h_squared, seen.radius_at_foot, seen.slope};
     if (!(line.t1 < line.t2)) return;
     const Vec3d across = v.normal * v.p_normal - v.w * x;
-    integrate_line(line, kernel, [&](double t, double dt) {
-      visit(across - v.u * t, seen.radius1 + seen.slope * (t - seen.t1), weight * dt, sum);
-    });
+    const auto radius = [&](double t) { return seen.radius1 + seen.slope * (t - seen.t1); };
+    integrate_line(line, kernel, [&](double t, double dt) { visit(across - v.u * t, radius(t), weight * dt, sum); });
+    if (kernel.family == KernelFamily::Compact)
+      for_each_edge(line, kernel.shape, [&](double t, double steepness) {
+        visit_edge(across - v.u * t, radius(t), weight / steepness, sum);
+      });
   };
   if (kernel.family == KernelFamily::Inverse) return integrate_inverse_lines<Sum>(v, kernel, at);
   if (kernel.family == KernelFamily::Cauchy) return integrate_cauchy_lines<Sum>(v, kernel, at);
   return integrate_compact_lines<Sum>(v, kernel, at);
+}
+template <class Sum, class Visit>
+Sum integrate_triangle(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel, const Visit& visit) {
+  return integrate_triangle<Sum>(triangle, p, kernel, visit, [](const Vec3d&, double, double, Sum&) {});
 }
 
 }  // namespace marrow

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "field/base/id.h"
+#include "field/blend/material_weights.h"
 #include "field/math/box3.h"
 #include "field/number/functions.h"
 
@@ -87,7 +88,9 @@ struct LeafWeight {
 };
 std::vector<LeafWeight> leaf_weights(const FieldTree&, const Vec3d& p, std::uint32_t record = FieldTree::whole);
 
-/// Material of the leaf with the largest weight, inside a blend of its strongest primitive; invalid: the object's own.
+/// The weights of the leaves by material; that of a blend is shared out among its primitives.
+MaterialWeights material_weights(const FieldTree&, const Vec3d& p, std::uint32_t record = FieldTree::whole);
+/// The material with the largest weight; invalid: the object's own.
 MaterialId strongest_material(const FieldTree&, const Vec3d& p, std::uint32_t record = FieldTree::whole);
 
 }  // namespace marrow

@@ -98,13 +98,19 @@ std::vector<LeafWeight> leaf_weights(const FieldTree& tree, const Vec3d& p, std:
   return leaves;
 }
 
+MaterialWeights material_weights(const FieldTree& tree, const Vec3d& p, std::uint32_t below) {
+  MaterialWeights all;
+  for (const LeafWeight& leaf : leaf_weights(tree, p, below)) {
+    if (const auto* blend = std::get_if<BlendLeaf>(&tree.node(*leaf.leaf)))
+      for (const MaterialWeight& w : material_weights(*blend->field, leaf.local))
+        add_weight(all, w.material, leaf.weight * w.weight);
+    else add_weight(all, leaf.leaf->material, leaf.weight);
+  }
+  return all;
+}
+
 MaterialId strongest_material(const FieldTree& tree, const Vec3d& p, std::uint32_t below) {
-  const std::vector<LeafWeight> leaves = leaf_weights(tree, p, below);
-  if (leaves.empty()) return {};
-  const LeafWeight& strongest = *std::max_element(
-      leaves.begin(), leaves.end(), [](const LeafWeight& a, const LeafWeight& b) { return a.weight < b.weight; });
-  const auto* blend = std::get_if<BlendLeaf>(&tree.node(*strongest.leaf));
-  return blend != nullptr ? strongest_material(*blend->field, strongest.local) : strongest.leaf->material;
+  return strongest(material_weights(tree, p, below));
 }
 
 }  // namespace marrow

@@ -143,20 +143,32 @@ struct BranchedGraph {
   }
 };
 
-Primitive curve_primitive(Curve curve) {
-  give_all_radii(curve);
-  if (curve.branches.empty()) return primitive_with(static_cast<const CurveSkeleton&>(curve), curve);
+SkeletonGraph branched_and_subdivided(const WrittenCurve& curve) {
   const BranchedGraph branched(curve);
   std::vector<std::int32_t> sticking;
   for (const int point : curve.sticking) sticking.push_back(branched.node_of[static_cast<std::size_t>(point)]);
-  SharedSkeletonGraph graph =
-      std::make_shared<const SkeletonGraph>(subdivide(branched.graph, curve.subdivision, curve.levels, sticking));
+  return subdivide(branched.graph, curve.subdivision, curve.levels, sticking);
+}
+
+Primitive curve_primitive(Curve curve) {
+  give_all_radii(curve);
+  if (curve.branches.empty()) return primitive_with(static_cast<const CurveSkeleton&>(curve), curve);
+  SharedSkeletonGraph graph = std::make_shared<const SkeletonGraph>(branched_and_subdivided(curve));
+  // What is given for each point is refined as the radii are, in their place.
+  WrittenCurve carrier = curve;
+  for (Attribute& attribute : curve.attributes) {
+    if (attribute.values.size() != curve.points.size()) continue;
+    carrier.radii = attribute.values;
+    attribute.values = branched_and_subdivided(carrier).radii;
+  }
   return primitive_with(std::move(graph), curve);
 }
 
 Primitive polyline_primitive(Polyline line) {
   give_all_radii(line);
   if (line.closed) {
+    for (Attribute& attribute : line.attributes)
+      if (attribute.values.size() == line.points.size()) attribute.values.push_back(double(attribute.values.front()));
     line.points.push_back(Vec3d(line.points.front()));
     line.radii.push_back(double(line.radii.front()));
   }

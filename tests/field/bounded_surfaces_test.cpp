@@ -110,6 +110,38 @@ TEST(BoundedSurfaces, GradientsAndJacobianAreTheDerivatives) {
   EXPECT_GT(triangles, 5);
 }
 
+// Kernels of low degree are not smooth at the edge of their support, under the integral: what is beside the edge is.
+TEST(BoundedSurfaces, JacobiansUnderCompactKernelsOfLowDegreeAreTheDerivatives) {
+  Random random(423);
+  int checked = 0;
+  double worst = 0;
+  const auto check = [&](const auto& at, const Vec3d& p) {
+    const SkeletonSample s = at(p);
+    if (s.value < 1e-3) return;
+    double magnitude = 0, off = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto component = [&](const Vec3d& q) { return at(q).si_gradient[k]; };
+      magnitude += length(s.si_jacobian.rows[k]);
+      off += length(numeric_gradient(component, p, 1e-5) - s.si_jacobian.rows[k]);
+    }
+    EXPECT_LE(off, 1e-6 * magnitude) << "check " << checked;
+    ++checked;
+    worst = std::max(worst, off / magnitude);
+  };
+  for (int i = 0; i < 100; ++i) {
+    const Kernel kernel{KernelFamily::Compact, random.whole(3, 6), random.between(1.2, 2)};
+    const ArcSkeleton arc = random.arc();
+    const TriangleSkeleton t = random.triangle();
+    check([&](const Vec3d& q) { return arc_field<second>(arc, q, kernel); }, random.vector(1.2));
+    const double x = random.between(-0.2, 1), y = random.between(-0.2, 1);
+    const Vec3d beside =
+        t.vertices[0] + (t.vertices[1] - t.vertices[0]) * x + (t.vertices[2] - t.vertices[0]) * y + random.vector(0.2);
+    if (i % 3 == 0) check([&](const Vec3d& q) { return triangle_field<second>(t, q, kernel); }, beside);
+  }
+  std::cout << "  worst relative difference of " << checked << ": " << worst << '\n';
+  EXPECT_GT(checked, 50);
+}
+
 TEST(BoundedSurfaces, CompactKernelsEndAtTheirSupport) {
   const Kernel kernel{KernelFamily::Compact, 5, 2};
   const TriangleSkeleton t{{Vec3d{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0.5, 0.5, 0.5}};

@@ -9,6 +9,7 @@
 
 #include "field/blend/blend_field.h"
 #include "field/program/field_program.h"
+#include "field/skeleton/skeletons.h"
 #include "tests/field/random.h"
 
 namespace marrow {
@@ -110,6 +111,37 @@ TEST(Blend, StrongestMaterialIsThatOfTheLargestShare) {
   blend.points.add({{1, 0, 0}, 1}, MaterialId{7});
   EXPECT_FALSE(strongest_material(blend, {-0.5, 0, 0}).valid());
   EXPECT_EQ(strongest_material(blend, {0.5, 0, 0}), MaterialId{7});
+}
+
+// w_i = f_i / f, and a strand that is cut into many pieces weighs what it does as one.   [physics 2.3]
+TEST(Blend, MaterialWeightsDoNotDependOnHowASkeletonIsCut) {
+  Random random(37);
+  for (int round = 0; round < 50; ++round) {
+    const SegmentSkeleton whole{{-1, 1, 0}, {1, 1, 0}, 0.5, 0.5}, other{{-1, -1, 0}, {1, -1, 0}, 0.5, 0.5};
+    const Vec3d p = random.vector(1.5);
+    const int pieces = random.whole(2, 9);
+    BlendField blend;
+    for (int i = 0; i < pieces; ++i) {
+      const double from = -1 + 2.0 * i / pieces, to = -1 + 2.0 * (i + 1) / pieces;
+      blend.segments.add({{from, 1, 0}, {to, 1, 0}, 0.5, 0.5}, MaterialId{3});
+    }
+    blend.segments.add(other, MaterialId{5});
+    const MaterialWeights weights = material_weights(blend, p);
+    const double f = segment_field<Derivatives::ScaleInvariant>(whole, p, blend.degree).value,
+                 g = segment_field<Derivatives::ScaleInvariant>(other, p, blend.degree).value;
+    ASSERT_EQ(weights.size(), 2u);
+    EXPECT_NEAR(weights[0].weight, f / (f + g), 1e-12);
+    EXPECT_NEAR(weights[1].weight, g / (f + g), 1e-12);
+    EXPECT_EQ(strongest_material(blend, p), f > g ? MaterialId{3} : MaterialId{5});
+  }
+  const BlendField touched = [] {
+    BlendField blend;
+    blend.points.add({{0, 0, 0}, 1}, MaterialId{3});
+    blend.points.add({{1, 0, 0}, 1}, MaterialId{5});
+    return blend;
+  }();
+  ASSERT_EQ(material_weights(touched, {1, 0, 0}).size(), 1u);
+  EXPECT_EQ(material_weights(touched, {1, 0, 0})[0].material, MaterialId{5});
 }
 
 TEST(Blend, BoundsHoldEverySkeleton) {

@@ -137,7 +137,7 @@ TEST(Oracle, Segments) {
   });
 }
 TEST(Oracle, Arcs) {
-  expect_exact("arc", 803, 60, 2e-13, 1e-9, [](Random& random) {
+  expect_exact("arc", 803, 60, 2e-13, 1e-12, [](Random& random) {
     const ArcSkeleton s = random.arc();
     const auto [sine, cosine] = sincos(s.end);
     return Scene<ArcSkeleton>{s, s.center + (s.axis1 * cosine + s.axis2 * sine) * s.major,
@@ -181,7 +181,7 @@ TEST(Oracle, TrianglesUnderTheCompactKernel) {
     const SkeletonSample sample = sample_of(s, p, kernel);
     const double error = std::max({error_of(sample.value, exact.value), error_of(sample.gradient, exact.gradient),
                                    error_of(sample.si_gradient, exact.si)});
-    EXPECT_LE(error, 1e-9) << "seed 806 round " << i << ", degree " << kernel.degree << " support " << kernel.shape;
+    EXPECT_LE(error, 1e-12) << "seed 806 round " << i << ", degree " << kernel.degree << " support " << kernel.shape;
     worst.add("triangle compact", error);
     ++checked;
   }

@@ -193,8 +193,9 @@ objects:
       blend:
         of:
           - curve: {points: [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 1, 0], [3, -1, 0]], radius: [1, 1, 2, 1, 1], levels: 1,
-                    branches: [[0, 1, 2], [2, 3], [2, 4]]}
-          - polyline: {points: [[0, 0, 0], [1, 0, 0], [0, 1, 0]], radius: 0.1, closed: true}
+                    branches: [[0, 1, 2], [2, 3], [2, 4]], attributes: {heat: [1, 2, 3, 4, 5]}}
+          - polyline: {points: [[0, 0, 0], [1, 0, 0], [0, 1, 0]], radius: 0.1, closed: true,
+                       attributes: {heat: [1, 2, 3], other: 4}}
 )");
   ASSERT_TRUE(scene) << render_all(scene.why(), record.sources);
   const auto& field = std::get<FieldDescription>(scene->objects[0].shape);
@@ -203,7 +204,13 @@ objects:
   EXPECT_EQ(graph.parents, (std::vector<std::int32_t>{-1, 0, 1, 2, -1, 4, -1, 6}));
   for (const std::size_t meeting : {3u, 4u, 6u}) EXPECT_EQ(graph.positions[meeting], (Vec3d{2, 0, 0}));
   EXPECT_EQ(graph.radii[3], 2);
+  const std::vector<Attribute> heat = std::get<Primitive>(field.nodes[0].what).attributes;
+  ASSERT_EQ(heat[0].values.size(), graph.radii.size());
+  for (const std::size_t meeting : {3u, 4u, 6u}) EXPECT_EQ(heat[0].values[meeting], 3);
+  for (const auto& [end, value] : {std::pair{0u, 1.0}, {5u, 4.0}, {7u, 5.0}}) EXPECT_EQ(heat[0].values[end], value);
   EXPECT_EQ(std::get<PolylineSkeleton>(skeleton(1)).points.size(), 4u);
+  const std::vector<Attribute> closed{{"heat", {1, 2, 3, 1}}, {"other", {4}}};
+  EXPECT_EQ(std::get<Primitive>(field.nodes[1].what).attributes, closed);
 }
 
 TEST_F(ReadScene, SkeletonsOfFilesAreSimplifiedAndSmoothed) {

@@ -22,10 +22,11 @@ struct Leaf {
   double rounding() const { return blend.kernel == KernelFamily::Compact && !blend.arcs.empty() ? 1e-7 : 1e-11; }
 };
 
-// Arcs under the compact kernel take some 10^5 nodes, and differences of them tell little: seldom one.
-Leaf random_leaf(Random& random, int round, bool may_hold_compact_arcs) {
+// Now and then with a triangle.
+Leaf random_leaf(Random& random, int round) {
   Leaf leaf{varied_blend(random, round)};
-  if (leaf.blend.kernel == KernelFamily::Compact && !(may_hold_compact_arcs && round % 300 == 2)) leaf.blend.arcs = {};
+  const bool may_hold_triangles = leaf.blend.direction_bounds.empty() && !leaf.blend.alpha_per_skeleton;
+  if (may_hold_triangles && round % 40 < 3) leaf.blend.triangles.add(random.triangle(), {});
   return leaf;
 }
 
@@ -37,7 +38,7 @@ TEST(BlendLeaf, EnclosuresHoldValuesAndSlopes) {
   Checks checks;
   for (int round = 0; checks.enclosures < wanted_checks() && !HasFailure(); ++round) {
     SCOPED_TRACE("blend " + std::to_string(round));
-    const Leaf leaf = random_leaf(random, round, true);
+    const Leaf leaf = random_leaf(random, round);
     for (int i = 0; i < 20 && !HasFailure(); ++i) {
       expect_enclosures_in_doubles(leaf, random_box(place(random, i), random), random, checks);
       expect_ray_enclosures_in_doubles(leaf, place(random, i), random, checks);
@@ -51,7 +52,7 @@ TEST(BlendLeaf, DerivativesAreThoseOfDifferences) {
   Checks checks;
   for (int round = 0; checks.slopes < wanted_checks() && !HasFailure(); ++round) {
     SCOPED_TRACE("blend " + std::to_string(round));
-    const Leaf leaf = random_leaf(random, round, false);
+    const Leaf leaf = random_leaf(random, round);
     for (int i = 0; i < 20 && !HasFailure(); ++i)
       expect_derivatives_in_doubles(leaf, place(random, i), i % 4 == 0, checks);
   }
@@ -65,7 +66,7 @@ TEST(BlendLeaf, IsBelowALevelOutsideItsExtent) {
   Random random(20260111);
   for (int round = 0; round < 400 && !HasFailure(); ++round) {
     SCOPED_TRACE("blend " + std::to_string(round));
-    const Leaf leaf = random_leaf(random, round, true);
+    const Leaf leaf = random_leaf(random, round);
     const bool ends = leaf.blend.kernel == KernelFamily::Compact;
     const double level = ends && round % 2 == 0 ? 0 : random.between(0.05, 1.5);
     const Box3 box = blend_extent(leaf.blend, level);

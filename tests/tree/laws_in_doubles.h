@@ -84,12 +84,13 @@ Rise rise_of(const Function& f, const Vec3d& p, std::size_t axis, double h) {
   return {(8 * (a - b) - (far_a - far_b)) / (12 * h), std::fabs(ahead - behind)};
 }
 
-// Agrees with the differences of one step at least, or there is a kink.
+// Agrees with the differences of one step at least, or there is a kink. The shortest steps are for warps in warps,
+// which may turn a field on a length of 1e-7.
 enum class Verdict { Agrees, Rough, Wrong };
 template <class Function>
 Verdict verdict_of(const Function& f, const Vec3d& p, std::size_t axis, double slope, double scale, double tolerance) {
   bool rough = false;
-  for (const double step : {0x1p-12, 0x1p-9, 0x1p-15, 0x1p-18, 0x1p-21, 0x1p-24}) {
+  for (const double step : {0x1p-12, 0x1p-9, 0x1p-15, 0x1p-18, 0x1p-21, 0x1p-24, 0x1p-27, 0x1p-30}) {
     const Rise rise = rise_of(f, p, axis, step);
     if (std::fabs(rise.middle - slope) <= 0.2 * rise.roughness + tolerance * scale && rise.roughness <= 1e-2 * scale)
       return Verdict::Agrees;

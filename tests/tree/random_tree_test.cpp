@@ -1,6 +1,7 @@
 // Trees of every kind of node, nested anyhow: enclosures, derivatives, restriction to a box, and who contributed.
 #include "tests/tree/random_tree.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <string>
@@ -179,19 +180,31 @@ TYPED_TEST(LeafWeights, AreContributions) {
   EXPECT_GE(checked, 50);
 }
 
-// The strongest leaf gives the material.
-TEST(RandomTree, MaterialIsThatOfTheStrongestLeaf) {
+// Leaves of one material count together; the largest share gives the material.
+TEST(RandomTree, MaterialWeightsAreThoseOfTheLeaves) {
   int checked = 0;
   for_random_trees(20260110, [&](const FieldTree& tree, Random& random) {
     const Vec3d p = random.vector(1.5);
     const std::vector<LeafWeight> leaves = leaf_weights(tree, p);
-    if (leaves.empty()) return true;
-    const LeafWeight* strongest = &leaves[0];
-    for (const LeafWeight& leaf : leaves)
-      if (leaf.weight > strongest->weight) strongest = &leaf;
-    if (!std::holds_alternative<BlendLeaf>(tree.node(*strongest->leaf))) {
-      EXPECT_EQ(strongest_material(tree, p), strongest->leaf->material);
+    const MaterialWeights materials = material_weights(tree, p);
+    EXPECT_EQ(materials.empty(), leaves.empty());
+    double sum = 0, most = 0;
+    for (const MaterialWeight& w : materials) {
+      double of_leaves = 0;
+      bool blends = false;
+      for (const LeafWeight& leaf : leaves) {
+        blends = blends || std::holds_alternative<BlendLeaf>(tree.node(*leaf.leaf));
+        if (leaf.leaf->material == w.material) of_leaves += leaf.weight;
+      }
+      if (!blends) { EXPECT_NEAR(w.weight, of_leaves, 1e-12); }
+      sum += w.weight;
+      most = std::max(most, w.weight);
     }
+    if (leaves.empty()) return true;
+    EXPECT_NEAR(sum, 1, 1e-12);
+    const MaterialId chosen = strongest_material(tree, p);
+    EXPECT_TRUE(std::any_of(materials.begin(), materials.end(),
+                            [&](const auto& w) { return w.material == chosen && w.weight == most; }));
     return ++checked < 300;
   });
 }
