@@ -13,7 +13,7 @@ Vec3d vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 // IsoCurve::margin() for all shares that alpha may have on a step along the normal, as in march.h.
 double margin_of_shares(const PointField& f, const Vec3d& normal, double step, const BlockLevel& fine,
                         const IsoCurve& iso, double x, double y, double n) {
-  const double left = 1 - (4 * n + 2) * step / f.nearest;
+  const double left = 1 - (6 * n + 2) * step / f.nearest;
   if (!(left > 0.1) || !(f.share_bend < std::numeric_limits<float>::infinity()))
     return std::min(iso.margin(x, y, 0), iso.margin(x, y, 1));
   const double move = dot(vec(f.share_gradient), normal) * step, bend = f.share_bend * step * step;
@@ -40,8 +40,8 @@ double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent,
     const double x = f.f + slope * step + bend + 2 * fine.f_error, x_low = f.f + slope * step - bend - 2 * fine.f_error;
     const double y =
         length(vec(f.si_gradient) + bent * step) + f.third * (n + 1) * (n + 2) * step * step + 2 * fine.gradient_error;
-    double margin = iso.margin(x * raise, y * raise);
-    if (iso.views().size() > 1) margin = margin_of_shares(f, normal, step, fine, iso, x * raise, y * raise, n);
+    double margin = iso.views().size() > 1 ? margin_of_shares(f, normal, step, fine, iso, x * raise, y * raise, n)
+                                           : iso.margin(x * raise, y * raise);
     if (iso.two_sided()) margin = std::min(margin, iso.margin(std::max(0.0, x_low / raise), y * raise));
     if (margin > enough) return step;
     if (margin > largest) {

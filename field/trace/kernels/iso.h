@@ -128,6 +128,11 @@ inline float nominal_margin_at(const BlockView& block, float x, float y, float s
   return margin;
 }
 
+// Of an end of the range, where a table stands.
+inline const IsoCurve::View& table_of_end(const BlockView& block, bool upper) {
+  return block.rows[upper ? block.row_count - 1 : 0];
+}
+
 inline bool nominally_inside(const BlockView& block, float x, float y, float share) {
   if (x > block.iso.critical) return true;  // the first table is that of the least angle, which has the largest one
   const float margin = nominal_margin_at(block, x, y, share);
@@ -138,6 +143,17 @@ inline bool nominally_inside(const BlockView& block, float x, float y, float sha
 struct IsoValue {
   float curve = 0, v = 0, slope = 0, v_slope = 0, x_weight = 0, y_weight = 0;
   float share_weight = 0;  // derivative of the residual by the share
+
+  // Of one table.
+  IsoValue(const IsoCurve::View& iso, float x, float y, float dx, float dy) {
+    const CurveValue at = curve_at(iso, turned_u(iso, x, y));
+    curve = at.value;
+    v = turned_v(iso, x, y);
+    x_weight = iso.sin_theta + at.slope * iso.cos_theta;
+    y_weight = iso.cos_theta - at.slope * iso.sin_theta;
+    slope = -x_weight * dx - y_weight * dy;
+    v_slope = turned_v(iso, dx, dy);
+  }
 
   IsoValue(const BlockView& block, float share, float share_slope, float x, float y, float dx, float dy) {
     const IsoRows rows(block, share);

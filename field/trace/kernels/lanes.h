@@ -29,6 +29,18 @@ inline float inverse_root(float q, int k) {
 }
 
 inline V16 splat(float s) { return V16{} + s; }
+
+// a^k for k > 0, of a float or a V16.
+template <class T>
+inline T power_of(T a, int k) {
+  for (; !(k & 1); k >>= 1) a = a * a;
+  T power = a;
+  while (k >>= 1) {
+    a = a * a;
+    if (k & 1) power = power * a;
+  }
+  return power;
+}
 inline V16 load(const float* p) { return *static_cast<const V16*>(__builtin_assume_aligned(p, 64)); }
 inline V16 root_of(V16 v) {
   V16 r;

@@ -11,6 +11,7 @@ struct Marcher {
   FarOnRay far;
   bool exits = false;  // the ray is inside, and what is looked for is where it leaves: all samples are mirrored
   int evaluations = 0;
+  mutable SampleShare<Varied> last;  // what of the angle was summed last
 
   Marcher(const BlockView& b, const FieldLevel& l, const LocalRay& r) : block(b), level(l), ray(r), far{l, r} {}
 
@@ -58,7 +59,7 @@ struct Marcher {
     p.residual = margin_at(iso, p.s.f * p.raise, p.y * p.raise);
   }
 
-  VariedAngle angle() const { return {block, level, ray}; }
+  VariedAngle angle() const { return {block, level, ray, last.summed}; }
 
   // What is inside takes the part of what is outside. To within rounding: nothing more is claimed of exits.
   static void mirror(Sample& p) {
@@ -125,7 +126,7 @@ struct Marcher {
     }
     const float y_end = root_of(length2) + (p.s.third * series.gradient + level.far_g_bend) * hh + level.g_error;
     const float y_up = max_of(p.y, y_end);
-    if constexpr (Varied) return angle().margin(p, max_of(p.s.f, x_end), y_up, angle().shares_until(p, h)) > 0;
+    if constexpr (Varied) return angle().margin_within(p, max_of(p.s.f, x_end), y_up, h) > 0;
     if (!(margin(p, max_of(p.s.f, x_end), y_up) > 0)) return false;
     if (!block.iso.two_sided) return true;
     const float x_low = min_of(p.s.f, p.s.f + p.s.df * h - bend) * (1 - rounding) - 2 * level.f_error;
@@ -148,7 +149,7 @@ struct Marcher {
     const float y = root_of(length2) - (p.s.third * series.gradient + level.far_g_bend) * hh - level.g_error;
     float x = x_high - 2 * bend - 2 * level.f_error;
     if (!(x > 0) || !(y > 0)) return false;
-    if constexpr (Varied) return angle().inside(x, y, angle().shares_until(p, h));
+    if constexpr (Varied) return angle().inside_within(p, x, y, h);
     if (block.iso.two_sided) x = max_of(x, min_of(x_high, block.iso.peak_x));
     return curve_at(block.iso, turned_u(block.iso, x, y)).value < turned_v(block.iso, x, y);
   }
@@ -165,7 +166,7 @@ struct Marcher {
     const float y_end = along / max_of(p.y, 1e-12F) - (p.s.third * series.gradient + level.far_g_bend) * hh;
     const float y = max_of(0, min_of(p.y, y_end)), x_end = p.s.f + p.s.df * h;
     float x = max_of(0, min_of(p.s.f, x_end - bend));
-    if constexpr (Varied) return angle().inside(x, y, angle().shares_until(p, h));
+    if constexpr (Varied) return angle().inside_within(p, x, y, h);
     if (block.iso.two_sided) x = max_of(x, min_of(max_of(p.s.f, x_end + bend), block.iso.peak_x));
     return nominally_inside(block.iso, x, y);
   }
@@ -181,7 +182,7 @@ struct Marcher {
       length2 += end * end;
     }
     const float y = root_of(length2) + (p.s.third * series.gradient + level.far_g_bend) * hh, x = p.s.f + p.s.df * h;
-    if constexpr (Varied) return angle().nominal(x + bend, y, angle().shares_until(p, h)) > 0;
+    if constexpr (Varied) return angle().nominal_within(p, x + bend, y, h) > 0;
     return nominal_margin_at(block.iso, x + bend, y) > 0 &&
            (!block.iso.two_sided || nominal_margin_at(block.iso, max_of(0, x - bend), y) > 0);
   }

@@ -9,11 +9,18 @@ inline constexpr float position_rounding = 2e-7F;
 template <bool Varied>
 struct SampleShare {};
 
-// Its share of the range as summed, how that changes along the ray, and how it bends at most: infinite when any share
-// may hold. By how much the residual bends with it, and by how much another share may lower it.
+// Its share of the range, as summed at a place near by or here; how that changes along the ray from there, and how it
+// bends at most: infinite when any share may hold.
+struct SummedShare {
+  float share = 0, slope = 0, bend = infinity;
+  float t = 0, distance = 1;  // of the place; to its nearest source
+};
+
+// By how much the residual bends with the share, and by how much another share may lower it.
 template <>
 struct SampleShare<true> {
-  float share, share_slope, share_bend, residual_bend, residual_drop;
+  SummedShare summed;
+  float residual_bend, residual_drop;
 };
 
 // The field at one t, raised by the level's certified error, with what bounds it nearby.

@@ -82,41 +82,30 @@ struct Quadratic {
   }
 };
 
-// The share of the range of angles, with |share(t + h) - share - slope h| <= bend h^2 / (1 - (4 n + 2) |h| / d) for
-// steps within d, the distance to the nearest source.
-template <int Slopes>
-struct ShareValue {
-  float share = 1, slope[Slopes] = {}, bend = infinity;
-};
-
-// Strands in lanes: f and u, the direction, of length 1 or 0; for bounds of how the share bends b = 1 / d^2, d the
-// distance, and rho^2 and rho n / d: a strand whose mean direction has the length c turns by
-// rho = n / d sqrt(1 - c^2) / c at most, as its segments' share of it changes.
+// Strands in lanes: f and u, the direction, of length 1 or 0. A strand whose mean direction has the length c turns by
+// rho = n / d sqrt(1 - c^2) / c at most, d the distance, as its segments' share of it changes.
 template <int Slopes>
 struct StrandLanes {
   alignas(64) float sum[4][most_strands];  // f and sum f_s u_s, then f and u
   alignas(64) float sum_slope[Slopes][4][most_strands];
-  alignas(64) float inverse2[most_strands];
+  alignas(64) float inverse2[most_strands];  // 1 / d^2
+  alignas(64) float turned[most_strands];    // sqrt(1 - c^2) / c
   int count = 0;
   float field = 0;                               // of all that are listed
-  float bend[3] = {}, bend2[3] = {};             // sums of f q and of f^2 q for q = b, rho^2, rho n / d
+  float points = 0, point_bend = 0;              // of points: sums of f and of f b
   Along<Slopes> numerator, denominator, before;  // over pairs; the field of those before
 
   // Adds the rests, turns sums into directions.
-  void make_directions(const StrandLevel& level, const Quadratic<Slopes>& at, float n) {
+  void make_directions(const StrandLevel& level, const Quadratic<Slopes>& at) {
     const int stride = (count + lanes - 1) / lanes * lanes;
     V16 totals[12] = {};
-    for (int b = 0; b < stride; b += lanes) add_rests(level, at, n, b, stride, totals);
+    for (int b = 0; b < stride; b += lanes) add_rests(level, at, b, stride, totals);
     float t[16];
     sum_lanes(totals, t);
-    for (int k = 0; k < 3; ++k) {
-      bend[k] = t[k];
-      bend2[k] = t[3 + k];
-    }
-    field = t[6];
+    field = t[0];
   }
 
-  void add_rests(const StrandLevel& level, const Quadratic<Slopes>& at, float n, int b, int stride, V16 (&totals)[12]) {
+  void add_rests(const StrandLevel& level, const Quadratic<Slopes>& at, int b, int stride, V16 (&totals)[12]) {
     AlongLanes<Slopes> s[4];
     for (int k = 0; k < 4; ++k) {
       s[k] = at.of(level.rest + k * stride + b, 4 * stride);
@@ -133,19 +122,17 @@ struct StrandLanes {
     const V16 inverse = size2 > 0.0F ? 1.0F / root_of(size2) : V16{};
     for (int k = 1; k < 4; ++k) s[k].value = s[k].value * inverse;
     for (int i = 0; i < Slopes; ++i) {
-      V16 turn{};
-      for (int k = 1; k < 4; ++k) turn += s[k].value * s[k].slope[i];
-      for (int k = 1; k < 4; ++k) s[k].slope[i] = (s[k].slope[i] - s[k].value * turn) * inverse;
+      V16 along{};
+      for (int k = 1; k < 4; ++k) along += s[k].value * s[k].slope[i];
+      for (int k = 1; k < 4; ++k) s[k].slope[i] = (s[k].slope[i] - s[k].value * along) * inverse;
     }
-    const V16 near = larger(load(inverse2 + b), splat(level.far_inverse2)), a2 = n * n * near;
+    const V16 near = larger(load(inverse2 + b), splat(level.far_inverse2));
     const V16 f = s[0].value, ff = f * f, c2 = larger(splat(0.0025F), size2 / larger(ff, splat(1e-37F)));
     const V16 turned2 = size2 > 0.0F ? larger(V16{}, 1.0F / c2 - 1.0F) : V16{};
-    const V16 q[3] = {near, a2 * turned2, a2 * root_of(turned2)};
-    for (int k = 0; k < 3; ++k) {
-      totals[k] += f * q[k];
-      totals[3 + k] += ff * q[k];
-    }
-    totals[6] += f;
+    const V16 turn = root_of(turned2);
+    __builtin_memcpy(inverse2 + b, &near, sizeof near);
+    __builtin_memcpy(turned + b, &turn, sizeof turn);
+    totals[0] += f;
     for (int k = 0; k < 4; ++k) {
       __builtin_memcpy(sum[k] + b, &s[k].value, sizeof(V16));
       for (int i = 0; i < Slopes; ++i) __builtin_memcpy(sum_slope[i][k] + b, &s[k].slope[i], sizeof(V16));
@@ -169,13 +156,13 @@ struct StrandLanes {
   struct Angles {
     V16 value{}, slope[Slopes] = {};
     void add(const V16 (&u)[3], const float (&own)[3], const float (&own_slope)[Slopes][3], const V16& f,
-             const V16 (&f_slope)[Slopes], const V16 (&turned)[Slopes]) {
+             const V16 (&f_slope)[Slopes], const V16 (&turns)[Slopes]) {
       const V16 g = u[0] * own[0] + u[1] * own[1] + u[2] * own[2], g2 = g * g, g4 = g2 * g2, g8 = g4 * g4;
       const V16 steep = f * (8.0F * g4 * g2 * g);
       value += f * g8;
       for (int i = 0; i < Slopes; ++i) {
         const float* d = own_slope[i];
-        slope[i] += f_slope[i] * g8 + steep * (turned[i] + u[0] * d[0] + u[1] * d[1] + u[2] * d[2]);
+        slope[i] += f_slope[i] * g8 + steep * (turns[i] + u[0] * d[0] + u[1] * d[1] + u[2] * d[2]);
       }
     }
   };
@@ -190,22 +177,22 @@ struct StrandLanes {
       for (int i = 0; i < Slopes; ++i)
         for (int k = 0; k < 3; ++k) own_slope[i][k] = sum_slope[i][1 + k][j];
       Angles angles;
-      V16 f_slope[Slopes], turned[Slopes];
+      V16 f_slope[Slopes], turns[Slopes];
       for (int b = 0; b <= j; b += lanes) {
         const V16 u[3] = {load(sum[1] + b), load(sum[2] + b), load(sum[3] + b)};
         const auto earlier = lane < j - b;
         for (int i = 0; i < Slopes; ++i) {
           const auto& d = sum_slope[i];
           f_slope[i] = earlier ? load(d[0] + b) : V16{};
-          turned[i] = load(d[1] + b) * own[0] + load(d[2] + b) * own[1] + load(d[3] + b) * own[2];
+          turns[i] = load(d[1] + b) * own[0] + load(d[2] + b) * own[1] + load(d[3] + b) * own[2];
         }
-        angles.add(u, own, own_slope, earlier ? load(sum[0] + b) : V16{}, f_slope, turned);
+        angles.add(u, own, own_slope, earlier ? load(sum[0] + b) : V16{}, f_slope, turns);
       }
-      for (V16& t : turned) t = V16{};
+      for (V16& t : turns) t = V16{};
       for (int k = 0; k < 3; ++k) {
         const float* axes = level.axes + k * lanes;
         const V16 u[3] = {load(axes), load(axes + tensor_floats), load(axes + 2 * tensor_floats)};
-        angles.add(u, own, own_slope, far[k].value, far[k].slope, turned);
+        angles.add(u, own, own_slope, far[k].value, far[k].slope, turns);
       }
       totals[0] += angles.value * sum[0][j];
       for (int i = 0; i < Slopes; ++i) totals[1 + i] += angles.slope[i] * sum[0][j] + angles.value * sum_slope[i][0][j];
@@ -214,28 +201,6 @@ struct StrandLanes {
     sum_lanes(totals, t);
     numerator.value = t[0];
     for (int i = 0; i < Slopes; ++i) numerator.slope[i] = t[1 + i];
-  }
-
-  // share = N / D. With E = N - share D at the place: |(f_i f_j)''| <= n (2 n + 1) (b_i + b_j) f_i f_j, and for
-  // gamma = (u_i . u_j)^8 of directions that turn by rho_i and rho_j at most, whose turning changes by
-  // 3.25 rho n / d + 3 rho^2: |E''| <= sum f_i f_j (n (2 n + 1) (b_i + b_j) + 144 (rho_i^2 + rho_j^2)
-  // + 58 (rho_i n / d_i + ..)).
-  ShareValue<Slopes> share(const StrandLevel& level, float n, const Along<Slopes>& far_angles,
-                           const Along<Slopes>& far_pairs) const {
-    const Along<Slopes> above = numerator + numerator + far_angles, below = denominator + denominator + far_pairs;
-    ShareValue<Slopes> out;
-    if (!(below.value > 1e-36F)) return out;
-    const float weight[3] = {n * (2 * n + 1), 144, 58}, all = before.value, far = max_of(0, all - field);
-    float bent = 0;
-    for (int k = 0; k < 3; ++k) {
-      const float pairs = max_of(bend[k] * all - bend2[k], 1e-6F * bend[k] * all) + level.far_bend[k] * far * all;
-      bent += weight[k] * pairs;
-    }
-    const float inverse = 1 / below.value;
-    out.share = min_of(1, max_of(0, above.value * inverse));
-    for (int i = 0; i < Slopes; ++i) out.slope[i] = (above.slope[i] - out.share * below.slope[i]) * inverse;
-    out.bend = bent * inverse;
-    return out;
   }
 };
 
@@ -315,40 +280,40 @@ inline void add_points(const FieldLevel& level, int degree, const StrandProbe<Sl
         f.slope[j] = -m * w[i] * inv[i] * (dx[i] * e[0] + dy[i] * e[1] + dz[i] * e[2]);
       }
       out.add_pairs(f);
-      out.field += w[i];
-      out.bend[0] += w[i] * inv[i];
-      out.bend2[0] += w[i] * w[i] * inv[i];
+      out.points += w[i];
+      out.point_bend += w[i] * inv[i];
     }
   }
 }
 
-// At p, with derivatives along some directions.
+// What a place sees of the strands, with derivatives along some directions.
 template <int Slopes>
-[[gnu::noinline]] ShareValue<Slopes> strand_share(const FieldLevel& level, int degree, const float p[3],
-                                                  const float (&directions)[Slopes][3]) {
-  const StrandLevel& strands = *level.strands;
-  const float n = static_cast<float>(degree);
-  StrandProbe<Slopes> probe{{splat(p[0]), splat(p[1]), splat(p[2])}, {}};
-  for (int i = 0; i < Slopes; ++i)
-    for (int k = 0; k < 3; ++k) probe.direction[i][k] = directions[i][k];
-  const Quadratic<Slopes> at(p, directions);
-  StrandLanes<Slopes> sums;
-  if (degree == 4) add_near_strands<4>(level, degree, probe, sums);
-  else add_near_strands<0>(level, degree, probe, sums);
-  sums.make_directions(strands, at, n);
-  AlongLanes<Slopes> far[3];
-  for (int k = 0; k < 3; ++k) far[k] = at.of(strands.far + k * lanes, tensor_floats);
-  const auto scalar = [&](int lane) {
+struct StrandsAt {
+  StrandLanes<Slopes> near;
+  AlongLanes<Slopes> far[3];  // StrandLevel::far
+
+  StrandsAt(const FieldLevel& level, int degree, const float p[3], const float (&directions)[Slopes][3]) {
+    StrandProbe<Slopes> probe{{splat(p[0]), splat(p[1]), splat(p[2])}, {}};
+    for (int i = 0; i < Slopes; ++i)
+      for (int k = 0; k < 3; ++k) probe.direction[i][k] = directions[i][k];
+    const Quadratic<Slopes> at(p, directions);
+    if (degree == 4) add_near_strands<4>(level, degree, probe, near);
+    else add_near_strands<0>(level, degree, probe, near);
+    near.make_directions(*level.strands, at);
+    for (int k = 0; k < 3; ++k) far[k] = at.of(level.strands->far + k * lanes, tensor_floats);
+    near.before = sum_of_far(0);
+    near.add_all_pairs();
+    add_points(level, degree, probe, near);
+  }
+
+  // After the 45 axes: the field of the far strands, and over their pairs, see StrandLevel::far.
+  Along<Slopes> sum_of_far(int k) const {
+    const int lane = 13 + k;
     Along<Slopes> s{far[2].value[lane], {}};
     for (int i = 0; i < Slopes; ++i) s.slope[i] = far[2].slope[i][lane];
     return s;
-  };
-  sums.before = scalar(13);
-  sums.add_all_pairs();
-  add_points(level, degree, probe, sums);
-  sums.add_angles(strands, far);
-  return sums.share(strands, n, scalar(14), scalar(15));
-}
+  }
+};
 
 // Of one strand, at the places where a cube is probed: f and sum f_s u_s; how much a quadratic may be off.
 void strand_samples(const StrandQuery& query, StrandSamples& out) {

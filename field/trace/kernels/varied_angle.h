@@ -10,12 +10,18 @@ struct VariedAngle {
   const BlockView& block;
   const FieldLevel& level;
   const LocalRay& ray;
+  SummedShare& last;  // that was summed on the ray
 
   // As Marcher::judge(), with the angle of the place.
   void judge(Sample& p, const Probe& probe, float y, float dy) const {
-    const ShareRange ends{nominal_margin_at(block, p.s.f, y, 0), nominal_margin_at(block, p.s.f, y, 1)};
-    find_share(p, probe, ends);
-    const IsoValue iso(block, p.share, p.share_slope, p.s.f, y, p.s.df, dy);
+    const float low = nominal_margin_at(table_of_end(block, false), p.s.f, y),
+                high = nominal_margin_at(table_of_end(block, true), p.s.f, y);
+    p.summed = {};
+    if (needs_share(low, high)) p.summed = share_at(p, probe);
+    const SummedShare& here = p.summed;
+    const IsoValue iso =
+        known(p) ? IsoValue(block, here.share + here.slope * (p.t - here.t), here.slope, p.s.f, y, p.s.df, dy)
+                 : IsoValue(table_of_end(block, low > high), p.s.f, y, p.s.df, dy);
     p.v = iso.v;
     p.curve = iso.curve;
     p.nominal = iso.curve - iso.v;
@@ -23,47 +29,51 @@ struct VariedAngle {
     p.y_weight = iso.y_weight;
     p.slope = iso.slope;
     p.v_slope = iso.v_slope;
-    p.residual_bend = p.share_bend < infinity ? abs_of(iso.share_weight) * p.share_bend : 0;
-    p.residual_drop = max_of(abs_of(p.nominal - ends.low), abs_of(p.nominal - ends.high));
+    p.residual_bend = known(p) ? abs_of(iso.share_weight) * here.bend : 0;
+    p.residual_drop = max_of(0, p.nominal - min_of(low, high));
     p.s.f += level.f_error;
     p.sure = true;
-    p.residual = margin(p, p.s.f, p.y, shares_until(p, 0));
+    p.residual = margin_within(p, p.s.f, p.y, 0);
   }
 
-  // Where the two ends of the range tell nearly the same of the place, any share may hold.
-  void find_share(Sample& p, const Probe& probe, const ShareRange& ends) const {
+  // Else any share that may be may hold.
+  static bool known(const Sample& p) { return p.summed.bend < infinity; }
+
+  // Not where both ends of the range tell nearly the same of the place.
+  bool needs_share(float low, float high) const {
     constexpr float apart = 1.5F;
-    const float least = ends.low, most = ends.high;
-    const bool needed = (level.strands != nullptr || level.angle != nullptr) &&
-                        !(min_of(abs_of(least), abs_of(most)) > apart * abs_of(most - least) && least * most > 0);
-    if (!needed) {
-      p.share = least < most ? 0.0F : 1.0F;  // that at which more is inside
-      p.share_slope = 0;
-      p.share_bend = infinity;
-    } else if (level.angle != nullptr) {
-      find_mean_share(p, probe);
-    } else {
-      const float at[3] = {probe.px[0], probe.py[0], probe.pz[0]};
-      const float along[1][3] = {{ray.direction[0], ray.direction[1], ray.direction[2]}};
-      const ShareValue<1> value = strand_share(level, block.degree, at, along);
-      p.share = value.share;
-      p.share_slope = value.slope[0];
-      p.share_bend = value.bend;
-    }
+    return (level.strands != nullptr || level.angle != nullptr) &&
+           !(min_of(abs_of(low), abs_of(high)) > apart * abs_of(high - low) && low * high > 0);
+  }
+
+  // The one that was summed last serves where it tells this place as well.
+  SummedShare share_at(const Sample& p, const Probe& probe) const {
+    constexpr float known_to = 1e-5F;  // as sums of floats are in any case
+    const float h = p.t - last.t;
+    if (last.bend * h * h < known_to && abs_of(h) < 0.02F * last.distance) return last;
+    last = level.angle != nullptr ? mean_share(p, probe) : share_of_strands(p, probe);
+    return last;
+  }
+
+  SummedShare share_of_strands(const Sample& p, const Probe& probe) const {
+    const float at[3] = {probe.px[0], probe.py[0], probe.pz[0]};
+    const float along[1][3] = {{ray.direction[0], ray.direction[1], ray.direction[2]}};
+    const ShareValue<1> value = strand_share(level, block.degree, at, along);
+    return {value.share, value.slope[0], value.bend, p.t, p.distance};
   }
 
   // A / f of angle_field.h. With s the share here, D = A - s f is 0 here: bounds of D (B3 of tracing.md, for A and f)
   // over f bound how far A / f moves.
-  void find_mean_share(Sample& p, const Probe& probe) const {
+  SummedShare mean_share(const Sample& p, const Probe& probe) const {
     AngleSums a{};
     for_each_list(*level.angle, block.degree, AngleSummer{probe, a});
     RaySums far_part{};
     FarOnRay{*level.angle, ray}.add(p.t, far_part);
     const float inverse = 1 / max_of(p.s.f, 1e-20F), n = static_cast<float>(block.degree);
-    p.share = (a.value + far_part.f) * inverse;
-    p.share_slope = (a.slope + far_part.df - p.share * p.s.df) * inverse;
-    const float second = a.second + p.share * p.s.second, far_bend = level.angle->far_bend + p.share * level.far_bend;
-    p.share_bend = (0.5F * n * (n + 1) * second + far_bend) * inverse;
+    const float share = (a.value + far_part.f) * inverse, second = a.second + share * p.s.second,
+                far_bend = level.angle->far_bend + share * level.far_bend;
+    return {share, (a.slope + far_part.df - share * p.s.df) * inverse,
+            (0.5F * n * (n + 1) * second + far_bend) * inverse, p.t, p.distance};
   }
 
   // By which the share can be off: by the errors of A and f, and by rounding.
@@ -72,31 +82,46 @@ struct VariedAngle {
     if (!p.sure) return 0;
     if (level.angle == nullptr) return rounded;
     const float least = p.s.f - 2 * level.f_error;
-    return least > 0 ? (level.angle->f_error + p.share * level.f_error) / least + rounded : 1;
+    return least > 0 ? (level.angle->f_error + p.summed.share * level.f_error) / least + rounded : 1;
   }
 
-  // The shares on [t, t + h]. Fields are at most 1 / (1 - q)^n times what they are here, 1 / (1 - q)^(n + 2) their
-  // second derivatives, and of the quotient of such a change and a sum of f, or of products of two, there remains at
-  // most (1 - q)^-(4 n + 2) <= 1 / (1 - (4 n + 2) q).
+  // The shares on [t, t + h]. With q the largest distance from where they were summed, over that to the nearest source
+  // there, fields are at most (1 - q)^-n times what they are there, their second derivatives (1 - q)^-(n + 2), and of
+  // the quotient of such a change and a sum of f, or of what ShareBounds tells, at most (1 - q)^-(6 n + 2) remains.
   ShareRange shares_until(const Sample& p, float h) const {
-    const float left = 1 - static_cast<float>(4 * block.degree + 2) * abs_of(h) / p.distance;
-    if (!(p.share_bend < infinity) || !(left > 0.1F)) return {0, 1};
-    const float move = p.share_slope * h, bend = p.share_bend * h * h, growth = 1 / left,
-                error = share_error(p) * growth;
-    return {p.share + min_of(0, move - bend) * growth - error, p.share + max_of(0, move + bend) * growth + error};
+    const SummedShare& from = p.summed;
+    const float begin = p.t - from.t, end = begin + h, longest = max_of(abs_of(begin), abs_of(end));
+    const float q = longest / from.distance;
+    if (!(q < 0.1F)) return {0, 1};
+    const float growth = power_of(1 / (1 - q), 6 * block.degree + 2);
+    const float bend = from.bend * longest * longest, error = share_error(p) * growth;
+    const float a = from.slope * begin, b = from.slope * end;
+    return {from.share + min_of(0, min_of(a, b) - bend) * growth - error,
+            from.share + max_of(0, max_of(a, b) + bend) * growth + error};
   }
 
-  // Marcher::margin(), nominal_margin_at() and nominally_inside() for all shares of a range: C is largest, and least,
-  // at its ends.
-  float margin(const Sample& p, float x, float y, const ShareRange& shares) const {
-    if (!p.sure) return nominal(x, y, shares);
-    return min_of(margin_at(block, x * p.raise, y * p.raise, shares.low),
-                  margin_at(block, x * p.raise, y * p.raise, shares.high));
+  // Marcher::margin(), nominal_margin_at() and nominally_inside() for all shares on [t, t + h]: C is largest, and
+  // least, at the ends of a range.
+  float margin_within(const Sample& p, float x, float y, float h) const {
+    if (!p.sure) return nominal_within(p, x, y, h);
+    x *= p.raise;
+    y *= p.raise;
+    if (!known(p))
+      return min_of(margin_at(table_of_end(block, false), x, y), margin_at(table_of_end(block, true), x, y));
+    const ShareRange shares = shares_until(p, h);
+    return min_of(margin_at(block, x, y, shares.low), margin_at(block, x, y, shares.high));
   }
-  float nominal(float x, float y, const ShareRange& shares) const {
+  float nominal_within(const Sample& p, float x, float y, float h) const {
+    if (!known(p))
+      return min_of(nominal_margin_at(table_of_end(block, false), x, y),
+                    nominal_margin_at(table_of_end(block, true), x, y));
+    const ShareRange shares = shares_until(p, h);
     return min_of(nominal_margin_at(block, x, y, shares.low), nominal_margin_at(block, x, y, shares.high));
   }
-  bool inside(float x, float y, const ShareRange& shares) const {
+  bool inside_within(const Sample& p, float x, float y, float h) const {
+    if (!known(p))
+      return nominally_inside(table_of_end(block, false), x, y) && nominally_inside(table_of_end(block, true), x, y);
+    const ShareRange shares = shares_until(p, h);
     return nominally_inside(block, x, y, shares.low) && nominally_inside(block, x, y, shares.high);
   }
 };
