@@ -91,6 +91,13 @@ FieldSample evaluate(const FieldProgram& program, const Vec3d& p) {
 
 double value(const FieldProgram& program, const Vec3d& p) { return largest_part(program, p).value; }
 
+MaterialWeights material_weights(const FieldProgram& program, const Vec3d& p) {
+  const auto [part, tree, value] = largest_part(program, p);
+  if (tree != nullptr) return material_weights(*tree, p);
+  if (part == nullptr) return {};
+  return material_weights(part->blend, part->is_in_world() ? p : part->local_from_world.point(p));
+}
+
 HessianJet second_order_value(const FieldProgram& program, const Vec3<HessianJet>& p) {
   const Largest largest = largest_part(program, {p.x.value, p.y.value, p.z.value});
   if (largest.tree != nullptr) return value(*largest.tree, p);

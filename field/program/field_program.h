@@ -62,6 +62,9 @@ FieldSample evaluate(const FieldProgram&, const Vec3d& p);
 /// The `value` of evaluate(), bit for bit, at less cost.
 double value(const FieldProgram&, const Vec3d& p);
 
+/// Of the part that gives the value.   [physics 2.3]
+MaterialWeights material_weights(const FieldProgram&, const Vec3d& p);
+
 /// With gradient and Hessian, composed with those of p.
 HessianJet second_order_value(const FieldProgram&, const Vec3<HessianJet>& p);
 

@@ -28,7 +28,7 @@ inline Vec3<HessianJet> variables_at(const Vec3d& p) {
 
 /// Integrals: the same quadratures as for the fields themselves, with the second derivatives of the kernel under the
 /// integral; relative error below 1e-12. Under the compact kernel, whose edge moves with p, the nodes of a segment move
-/// with it; arcs and triangles there, and only there, take differences of first derivatives (1e-4).   [field-maths 1-3]
+/// with it; arcs and triangles there, and only there, take differences of first derivatives (1e-6).   [field-maths 1-3]
 SecondOrderSample second_order(const PointSkeleton&, const Vec3d& p, const Kernel&);
 SecondOrderSample second_order(const SegmentSkeleton&, const Vec3d& p, const Kernel&);
 SecondOrderSample second_order(const TriangleSkeleton&, const Vec3d& p, const Kernel&);

@@ -18,13 +18,21 @@ namespace marrow {
 /// Sum is a SkeletonSample, or derived from it with a += of its own.
 namespace surface_integral {
 
-// Of what has been gathered; halving gains some ten digits on a smooth panel, so that the true error is far below.
-inline constexpr double tolerance = 1e-12;
+// Of what has been gathered; halving gains some ten digits on a smooth panel, so that the true error is far below. The
+// second derivatives of a compact kernel of degree 3 grow without end at the edge of its support, and peak where the
+// edge all but touches a skeleton.
+inline constexpr double tolerance = 1e-12, jacobian_tolerance = 1e-9;
 
 inline bool agree(const SkeletonSample& coarse, const SkeletonSample& fine, const SkeletonSample& all) {
   const double size = length(all.si_gradient);
+  double jacobian = 0, jacobians_differ = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    jacobian += length(all.si_jacobian.rows[i]);
+    jacobians_differ += length(coarse.si_jacobian.rows[i] - fine.si_jacobian.rows[i]);
+  }
   return std::fabs(coarse.value - fine.value) <= tolerance * all.value &&
-         length(coarse.si_gradient - fine.si_gradient) <= tolerance * (size + all.value);
+         length(coarse.si_gradient - fine.si_gradient) <= tolerance * (size + all.value) &&
+         jacobians_differ <= jacobian_tolerance * jacobian;
 }
 
 // The angle to either side within which an arc can be nearer than `reach`; pi for all, below 0 for none of it.

@@ -56,6 +56,7 @@ struct ProbeCommand {
   std::optional<std::string> object;
   std::filesystem::path points;  ///< "-": standard input
   bool curvature = false;        ///< the Hessian too
+  bool materials = false;        ///< the weights of materials too
 };
 
 struct InfoCommand {

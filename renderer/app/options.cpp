@@ -139,6 +139,7 @@ void describe(CLI::App& app, ProbeCommand& c) {
   add_path(app, "--points", c.points, "Points, one 'x y z' a line; - is standard input")->required();
   app.add_flag("--curvature", c.curvature,
                "Hessian and curvature of the surface too; of a single blend the Hessian of its sum");
+  app.add_flag("--materials", c.materials, "What share of the field comes from each material");
   app.add_option_function<std::string>(
          "--format", [](const std::string&) {}, "json, the only one so far")
       ->check(CLI::IsMember({"json"}));

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "field/blend/curvature.h"
 #include "field/skeleton/second_order.h"
@@ -64,14 +65,28 @@ std::string curvature_of_field(const FieldProgram& program, const Vec3d& p) {
                      json(curvature.gaussian));
 }
 
-void print_samples(const FieldProgram& program, const std::vector<Vec3d>& points, bool curvature) {
+// What has no material of its own has that of the object.
+std::string materials_of_field(const FieldObject& field, const SceneDescription& scene, const Vec3d& p) {
+  MaterialWeights weights;
+  for (const MaterialWeight& w : material_weights(field.program, p))
+    add_weight(weights, w.material.valid() ? w.material : scene.objects[field.object.index()].material, w.weight);
+  nlohmann::ordered_json names = nlohmann::ordered_json::object();
+  for (const MaterialWeight& w : weights) names[scene.materials[w.material.index()].name] = w.weight;
+  return fmt::format(R"(, "materials": {})", names.dump());
+}
+
+void print_samples(const FieldObject& field, const SceneDescription& scene, const std::vector<Vec3d>& points,
+                   const ProbeCommand& command) {
+  const FieldProgram& program = field.program;
   const bool blend = is_single_blend(program);
   std::string_view separator = "[\n";
   for (const Vec3d& p : points) {
-    say(fmt::format("{}{{{}{}{}{}}}", separator, sample_of_field(program, p),
-                    blend ? sample_of_blend(program.parts()[0], p) : std::string(),
-                    blend && curvature ? hessian_of_sum(program.parts()[0], p) : std::string(),
-                    curvature ? curvature_of_field(program, p) : std::string()));
+    std::string sample = sample_of_field(program, p);
+    if (blend) sample += sample_of_blend(program.parts()[0], p);
+    if (blend && command.curvature) sample += hessian_of_sum(program.parts()[0], p);
+    if (command.curvature) sample += curvature_of_field(program, p);
+    if (command.materials) sample += materials_of_field(field, scene, p);
+    say(fmt::format("{}{{{}}}", separator, sample));
     separator = ",\n";
   }
   say(fmt::format("{}]\n", points.empty() ? "[" : "\n"));
@@ -101,7 +116,7 @@ ExitCode run(const ProbeCommand& command) {
   SourceCache sources;
   const auto points = points_of(command.points, sources);
   if (!points) return report(points.why(), sources, ExitCode::BadInput);
-  print_samples(fields->front()->program, *points, command.curvature);
+  print_samples(*fields->front(), scene->description, *points, command);
   return ExitCode::Ok;
 }
 

@@ -48,6 +48,15 @@ class ProbeTest(ProgramTest):
         self.assertEqual(list(answer), BASIC + OF_CURVATURE[1:])
         self.assertAlmostEqual(answer["mean_curvature"] * 0.5, 1, 9)
 
+    def test_materials_share_the_field(self):
+        two = POINT.replace("  skin:", "  moss: {diffuse: {color: 0.2}}\n  skin:")
+        two += "          - point: {at: [2, 0, 0], radius: 1, material: moss}\n"
+        middle, near = self.probe(self.write("two.yaml", two), [(1, 1, 0), (0.5, 0, 0)], "--materials")
+        self.assertEqual(list(middle), BASIC + OF_BLEND + ["materials"])
+        self.assert_near(middle["materials"]["skin"], 0.5)
+        self.assert_near(middle["materials"]["moss"], 0.5)
+        self.assert_near(near["materials"]["skin"], 0.5**-3 / (0.5**-3 + 1.5**-3))
+
     def test_numbers_survive_the_text(self):
         scene = self.write("point.yaml", POINT)
         self.assertEqual(self.probe(scene, POINTS), self.probe(scene, POINTS))
