@@ -1,6 +1,7 @@
 // Where the edge of a compact kernel's support cuts an arc or the lines of a triangle; internal to skeleton/.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -18,8 +19,12 @@ namespace marrow {
 class Cuts {
  public:
   Cuts(double begin, double end) : places_{begin, end} {}
+  /// Not where it would leave a piece that is short beyond sense: there rounding decides how far the edge is.
   void add(double x) {
+    const double least = 1e-12 * (places_[last_] - places_[0]);
+    const auto is_near = [&](double place) { return !(std::fabs(x - place) > least); };
     if (!(x > places_[0] && x < places_[last_]) || last_ + 1 == places_.size()) return;
+    if (std::any_of(places_.begin(), places_.begin() + static_cast<std::ptrdiff_t>(last_) + 1, is_near)) return;
     std::size_t at = ++last_;
     for (; places_[at - 1] > x || at == last_; --at) places_[at] = places_[at - 1];
     places_[at] = x;
