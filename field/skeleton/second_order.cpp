@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "field/skeleton/compact_line.h"
 #include "field/skeleton/second_order_source.h"
@@ -13,9 +15,9 @@
 namespace marrow {
 namespace {
 
-// Of a radius: what a quadrature is off by, some 1e-12, becomes 1e-8, and the error of the differences stays below that
-// down to a hundredth of a radius from where the edge of a support touches a skeleton.
-constexpr double relative_step = 1e-4;
+// Of a radius: what a quadrature is off by, some 1e-12, becomes 1e-9 and 1e-5. Shorter steps are for places beside
+// those where the edge of a support touches a skeleton.
+constexpr double longest_step = 1e-3, shortest_step = 1e-7;
 
 // The surface integrals are made for samples.
 struct Sum : SkeletonSample {
@@ -27,10 +29,9 @@ struct Sum : SkeletonSample {
   }
 };
 
-// Differences of the first derivatives with steps h and 2h, combined to fourth order. Only for arcs and triangles under
-// the compact kernel, whose edge cuts them anywhere: what the edge adds to the derivatives is not under the integral.
+// Differences of the first derivatives with steps h and 2h, combined to fourth order.
 template <class Plain>
-SecondOrderSample by_differences(const Plain& plain, const Vec3d& p, double h) {
+SecondOrderSample by_steps(const Plain& plain, const Vec3d& p, double h) {
   SecondOrderSample s;
   const auto first = [](const SkeletonSample& x) {
     return std::array{x.gradient, x.si_jacobian.rows[0], x.si_jacobian.rows[1], x.si_jacobian.rows[2]};
@@ -59,6 +60,36 @@ SecondOrderSample by_differences(const Plain& plain, const Vec3d& p, double h) {
     }
   }
   return s;
+}
+
+double difference(const SecondOrderSample& a, const SecondOrderSample& b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < 6; ++k) {
+    sum += std::fabs(a.field.curvature[k] - b.field.curvature[k]);
+    for (std::size_t c = 0; c < 3; ++c) sum += std::fabs(a.si[c].curvature[k] - b.si[c].curvature[k]);
+  }
+  return sum;
+}
+
+// By the two neighbouring steps that agree best. Only for arcs and triangles under the compact kernel, whose edge cuts
+// them anywhere: what the edge adds to the derivatives is not under the integral.
+template <class Plain>
+SecondOrderSample by_differences(const Plain& plain, const Vec3d& p, double radius) {
+  constexpr double enough = 1e-9;
+  double h = longest_step * radius, least = std::numeric_limits<double>::infinity();
+  SecondOrderSample best, longer = by_steps(plain, p, h);
+  while (h > shortest_step * radius) {
+    h /= 8;
+    const SecondOrderSample shorter = by_steps(plain, p, h);
+    const double off = difference(longer, shorter);
+    if (off < least) {
+      least = off;
+      best = shorter;
+    }
+    if (off <= enough * difference(shorter, {})) break;
+    longer = shorter;
+  }
+  return best;
 }
 
 SecondOrderSample limited(const SecondOrderSample& s) {
@@ -104,9 +135,9 @@ HessianJet second_order_share(const SegmentSkeleton& segment, const Vec3d& p, co
 
 SecondOrderSample second_order(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
   if (kernel.family == KernelFamily::Compact) {
-    const double step = relative_step * std::min({triangle.radii[0], triangle.radii[1], triangle.radii[2]});
+    const double radius = std::min({triangle.radii[0], triangle.radii[1], triangle.radii[2]});
     return by_differences([&](const Vec3d& q) { return triangle_field<Derivatives::Second>(triangle, q, kernel); }, p,
-                          step);
+                          radius);
   }
   bool foot_is_inside = false;
   const TriangleView v = best_view(triangle, p, foot_is_inside);
@@ -121,7 +152,7 @@ SecondOrderSample second_order(const TriangleSkeleton& triangle, const Vec3d& p,
 SecondOrderSample second_order(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
   if (kernel.family == KernelFamily::Compact)
     return by_differences([&](const Vec3d& q) { return arc_field<Derivatives::Second>(arc, q, kernel); }, p,
-                          relative_step * std::min(arc.radius_from, arc.radius_to));
+                          std::min(arc.radius_from, arc.radius_to));
   if (kernel.family == KernelFamily::Inverse &&
       arc_field<Derivatives::ScaleInvariant>(arc, p, kernel.degree).value > field_ceiling)
     return SecondOrderSample::on_skeleton();
