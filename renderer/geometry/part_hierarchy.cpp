@@ -28,8 +28,8 @@ struct Query : RTCIntersectContext {
   std::vector<ElementLog>* visits = nullptr;
 };
 
-// Whether the ray comes into a box before t. Embree asks for all boxes of a leaf when it has met one; NaN, of a ray in
-// the plane of a face, counts as inside.
+// Whether the ray comes into a box before t: Embree asks for all boxes of a leaf when it has met one. A ray exactly in
+// the plane of a padded face gives NaN and may count either way; what the box is padded for is not there.
 bool enters(const Query& q, const Box3& box, double t) {
   double enter = q.ray.t_min, exit = t;
   for (std::size_t i = 0; i < 3; ++i) {
