@@ -131,10 +131,10 @@ Surroundings CellTree::coarse_around(const TilePlace& place) const {
 // A cell narrower than some rays is hardly worth making; but beyond some radii its lists grow too long, and beyond some
 // of the thinnest radii positions in float are too rough (Divider).
 bool CellTree::is_small_enough(const Divider::Octant& octant, const Vec3d& center, double half, int level) const {
-  constexpr double least_rays = 8, most_radii = 12, most_thinnest = 32;
+  constexpr double most_radii = 12, most_thinnest = 32;
   if (half <= settings_.cell_size * octant.local_radius || level >= settings_.deepest_level) return true;
   return settings_.spacing && half <= most_radii * octant.local_radius && half <= most_thinnest * octant.thinnest &&
-         half <= least_rays * settings_.spacing->in_cube(center, half);
+         half <= settings_.spacing->least_cell(center, half);
 }
 
 std::unique_ptr<const Tile> CellTree::divide(const TilePlace& place) const {

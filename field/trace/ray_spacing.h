@@ -16,9 +16,13 @@ struct RaySpacing {
     double constant = 0, per_distance = 0;
   };
   std::vector<View> views;
+  /// Each view's rays come once: there will be one sample a pixel.
+  bool come_once = false;
 
   /// The least in a cube; 0 without views.
   double in_cube(const Vec3d& center, double half) const;
+  /// The half side below which a cell in that cube is hardly worth making; 0 without views.
+  double least_cell(const Vec3d& center, double half) const;
 };
 
 }  // namespace marrow

@@ -53,8 +53,12 @@ RenderSettings settings_over(const RenderCommand& command, RenderSettings settin
   return settings;
 }
 
-SurfaceOptions surface_options(const RenderCommand& command) {
-  return {.isa = command.isa, .embree_isa = command.embree_isa, .threads = command.threads, .eager = command.eager};
+SurfaceOptions surface_options(const RenderCommand& command, const RenderSettings& settings) {
+  return {.isa = command.isa,
+          .embree_isa = command.embree_isa,
+          .threads = command.threads,
+          .eager = command.eager,
+          .one_sample = sample_count(settings) == 1};
 }
 
 // A problem with a place is the scene's; one without is the machine's: an instruction set that is not there.
@@ -84,13 +88,13 @@ ExitCode run(const RenderCommand& command) {
 
   ProgressLine progress(command.progress);
   progress.phase("building");
-  const auto surfaces = build_surfaces(*scene, surface_options(command));
+  const RenderSettings settings = settings_over(command, scene->render);
+  const auto surfaces = build_surfaces(*scene, surface_options(command, settings));
   progress.clear();
   if (!surfaces) return report(surfaces.why(), record.sources, exit_code_of_failed_build(surfaces.why()));
   const auto compiled = compile_transport(*scene, **surfaces, load_environment);
   if (!compiled) return report(compiled.why(), record.sources, ExitCode::BadInput);
 
-  const RenderSettings settings = settings_over(command, scene->render);
   const Film film = render(*compiled, settings,
                            {.crop = ready.crop,
                             .threads = command.threads,

@@ -81,6 +81,7 @@ class Builder {
         add(TreeSolid::make(tree_of(part), object.material), object, id);
       } else {
         same.spacing->views.push_back(ray_spacing(scene_, part.local_from_world));
+        same.spacing->come_once = options_.one_sample;
         if (same.solid != nullptr) solids.push_back({same.solid->placed_again(part, object.material), id});
         else
           same.solid =

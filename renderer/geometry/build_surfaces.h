@@ -18,6 +18,8 @@ struct SurfaceOptions {
   /// What is otherwise made when the first ray needs it is made at once, as far as a lattice of rays meets it. Pictures
   /// do not depend on it.
   bool eager = false;
+  /// One sample of each pixel is all that is wanted: space is divided less finely, and pictures differ by rounding.
+  bool one_sample = false;
 };
 
 struct SurfaceReport {

@@ -83,7 +83,7 @@ struct Job {
   const RenderOptions& options;
   std::unique_ptr<const Integrator> integrator = make_integrator(settings);
   PixelFilter filter{};
-  int samples = integrator->noise_free() ? 1 : std::max(settings.samples_per_pixel, 1);
+  int samples = sample_count(settings);
 
   bool interrupted() const { return options.interrupted && options.interrupted->load(std::memory_order_relaxed); }
 };
@@ -195,6 +195,10 @@ PixelWindow clipped(const PixelWindow& display, const std::optional<PixelWindow>
 }
 
 }  // namespace
+
+int sample_count(const RenderSettings& settings) {
+  return make_integrator(settings)->noise_free() ? 1 : std::max(settings.samples_per_pixel, 1);
+}
 
 Film render(const RenderScene& scene, const RenderSettings& settings, const RenderOptions& options) {
   const DefaultFloatEnvironment defaults;

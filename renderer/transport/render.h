@@ -35,6 +35,10 @@ struct RenderOptions {
   const std::atomic<bool>* interrupted = nullptr;
 };
 
+/// How many samples render() takes of each pixel, when it is not stopped: the integrators `normals` and `depth` take
+/// one.
+int sample_count(const RenderSettings&);
+
 /// Renders `settings.samples_per_pixel` samples in passes over the whole picture. The film has the same bits for any
 /// number of threads. The integrators `normals` and `depth` take one sample through each pixel's middle.
 Film render(const RenderScene&, const RenderSettings& settings, const RenderOptions& options = {});
