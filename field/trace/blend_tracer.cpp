@@ -115,7 +115,9 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
   }
   log.undecided = std::min(log.undecided, cube.to_world(root.undecided));
   if (!root.hit) return {};
-  return CellHit{std::max(cube.to_world(root.t), ray.t_min), &b};
+  const double t = std::max(cube.to_world(root.t), ray.t_min);
+  // Where a ray ends inside, what is met may be its end, which as a float can lie behind it.
+  return CellHit{any ? std::min(t, exit) : t, &b};
 }
 
 TraceStatistics BlendTracer::statistics() const {

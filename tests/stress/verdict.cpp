@@ -56,8 +56,9 @@ void judge_limits(const StressScene& scene, const Ray& ray, const SurfaceHit& hi
   const double slack = 4 * ulp_of_float(hit.t) + 2 * field_rounding / along;
   const auto at = scene.surfaces().first_hit(ending(hit.t));
   const auto before = scene.surfaces().first_hit(ending(std::nextafter(hit.t, 0)));
-  const bool holds = at && at->t == hit.t && !before && scene.surfaces().occluded(ending(hit.t + slack)) &&
-                     !scene.surfaces().occluded(ending(hit.t - slack));
+  const auto hidden_from = [&](double steps) { return scene.surfaces().occluded(ending(hit.t + steps * slack)); };
+  const bool holds = at && at->t == hit.t && !before && !hidden_from(-1) && hidden_from(1) && hidden_from(3) &&
+                     hidden_from(10) && hidden_from(30);
   if (holds) return;
   ++v.limits;
   note(v.limit_rays, text(scene, ray, family, "limits not kept at", hit.t));
