@@ -10,6 +10,7 @@ namespace {
 #include "field/trace/kernels/far_on_ray.h"
 #include "field/trace/kernels/iso.h"
 #include "field/trace/kernels/strands.h"
+#include "field/trace/kernels/strand_samples.h"
 #include "field/trace/kernels/share_bounds.h"
 #include "field/trace/kernels/sample.h"
 #include "field/trace/kernels/varied_angle.h"

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t n = tensor_components;
 using Matrix = std::array<std::array<double, n>, n>;
 
-// Components of u^8, as kernels/strands.h orders them.
+// Components of u^8, as kernels/strand_samples.h orders them.
 std::array<double, n> eighth_power(const Vec3d& u) {
   std::array<double, n> t{};
   std::size_t at = 0;

@@ -1,9 +1,12 @@
 // marrow check: every mistake of a scene, without rendering it.
 #include <cstdio>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "renderer/app/commands.h"
+#include "renderer/app/environment.h"
+#include "renderer/app/picture_advice.h"
 #include "renderer/app/print.h"
 #include "renderer/app/report.h"
 #include "renderer/app/scene_input.h"
@@ -29,11 +32,18 @@ std::string summary(const LoadedScene& scene) {
 ExitCode run(const CheckCommand& command) {
   ReadRecord record;
   const auto scene = load(command.scene, record);
-  Diagnostics all = scene ? Diagnostics{} : scene.why();
+  Diagnostics errors = scene ? check_environments(scene->description) : scene.why();
+  // What has no place is the scene file itself; editors want its name.
+  if (command.json)
+    for (Diagnostic& d : errors)
+      if (d.where.file.empty()) d.where.file = command.scene.path.string();
+  Diagnostics all = errors;
   all.insert(all.end(), record.warnings.begin(), record.warnings.end());
+  if (scene)
+    for (Diagnostic& d : picture_advice(scene->description, command.scene)) all.push_back(std::move(d));
   if (command.json) say(to_json(all) + '\n');
   else report(all, record.sources, ExitCode::Ok);
-  if (!scene) return exit_code_of_failed_load(command.scene);
+  if (!errors.empty()) return exit_code_of_failed_load(command.scene);
   if (!command.json) say(fmt::format("{}: ok: {}\n", command.scene.path.string(), summary(*scene)));
   return ExitCode::Ok;
 }

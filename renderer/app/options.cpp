@@ -10,14 +10,16 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "renderer/app/option_values.h"
 #include "renderer/app/print.h"
-#include "renderer/app/text.h"
 #include "renderer/bench/workload.h"
 #include "renderer/output/colormap.h"
 #include "renderer/scene/suggestion.h"
 
 namespace marrow {
 namespace {
+
+std::string in_one_line(const Diagnostic& d) { return d.hint.empty() ? d.message : d.message + "; " + d.hint; }
 
 /// An option whose text a function of ours reads; its message tells what is wrong.
 template <class Target, class T>
@@ -27,7 +29,7 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, Target& target,
       name,
       [&target, name, parse](const std::string& text) {
         auto value = parse(text);
-        if (!value) throw CLI::ValidationError(name, value.why().front().message);
+        if (!value) throw CLI::ValidationError(name, in_one_line(value.why().front()));
         target = *value;
       },
       help);
@@ -56,30 +58,6 @@ void add_threads(CLI::App& app, int& threads) {
       ->type_name("N");
 }
 
-Result<double> duration(const std::string& text) {
-  if (const auto seconds = parse_duration(text)) return *seconds;
-  return failure("a time is 90s, 10m or 1h30m; found '" + text + "'");
-}
-
-Result<std::pair<double, double>> range(const std::string& text) {
-  const auto parts = split(text, ':');
-  if (parts.size() == 2) {
-    const auto low = parse_decimal(parts[0]), high = parse_decimal(parts[1]);
-    if (low && high && *low < *high) return std::pair{*low, *high};
-  }
-  return failure("a range is LOW:HIGH with LOW < HIGH; found '" + text + "'");
-}
-
-Result<SliceWindow> window(const std::string& text) {
-  const auto parts = split(text, ',');
-  std::vector<double> edges;
-  for (const auto part : parts)
-    if (const auto edge = parse_decimal(part)) edges.push_back(*edge);
-  if (parts.size() == 4 && edges.size() == 4 && edges[0] < edges[2] && edges[1] < edges[3])
-    return SliceWindow{edges[0], edges[1], edges[2], edges[3]};
-  return failure("a window is u0,v0,u1,v1 in scene units with u0 < u1 and v0 < v1; found '" + text + "'");
-}
-
 void describe(CLI::App& app, RenderCommand& c) {
   static const std::map<std::string, ProgressStyle> styles{{"auto", ProgressStyle::Auto},
                                                            {"bar", ProgressStyle::Bar},
@@ -89,9 +67,10 @@ void describe(CLI::App& app, RenderCommand& c) {
   add_path(app, "-o,--output", c.output, "Picture to write, .exr or .png; default: SCENE's stem, both");
   add_path(app, "--png", c.png, "PNG to write, through the view");
   app.add_option("--spp", c.samples_per_pixel, "Samples per pixel")->check(CLI::Range(1, 1 << 24))->type_name("N");
-  add_parsed<std::optional<double>, double>(app, "--time", c.time_limit_s, duration, "Stop after this time")
+  add_parsed<std::optional<double>, double>(app, "--time", c.time_limit_s, parse_time_limit, "Stop after this time")
       ->type_name("90s|10m|1h30m");
-  app.add_option("--seed", c.seed, "Seed of the samples")->type_name("N");
+  add_parsed<std::optional<std::uint64_t>, std::uint64_t>(app, "--seed", c.seed, parse_seed, "Seed of the samples")
+      ->type_name("N");
   add_threads(app, c.threads);
   add_parsed<std::optional<Crop>, Crop>(app, "--crop", c.crop, parse_crop, "Part of the film, in pixels or percent")
       ->type_name("x0,y0,x1,y1");
@@ -160,7 +139,7 @@ void describe(CLI::App& app, SliceCommand& c) {
          "--plane",
          [&c, plane](const std::string& text) {
            const auto parsed = plane(text);
-           if (!parsed) throw CLI::ValidationError("--plane", parsed.why().front().message);
+           if (!parsed) throw CLI::ValidationError("--plane", in_one_line(parsed.why().front()));
            c.request.axis = parsed->first;
            c.request.offset = parsed->second;
          },
@@ -170,9 +149,9 @@ void describe(CLI::App& app, SliceCommand& c) {
   app.add_option("--object", c.object, "Object to paint; default: the largest value of all fields")->type_name("NAME");
   add_path(app, "-o,--output", c.output, ".png (false colour) or .exr (raw numbers); default: slice.png");
   using Range = std::pair<double, double>;
-  add_parsed<std::optional<Range>, Range>(app, "--range", c.request.range, range, "Range of the colours")
+  add_parsed<std::optional<Range>, Range>(app, "--range", c.request.range, parse_range, "Range of the colours")
       ->type_name("LOW:HIGH");
-  add_parsed<std::optional<SliceWindow>, SliceWindow>(app, "--window", c.request.window, window,
+  add_parsed<std::optional<SliceWindow>, SliceWindow>(app, "--window", c.request.window, parse_window,
                                                       "Part of the plane, in scene units")
       ->type_name("u0,v0,u1,v1");
   app.add_option("--width", c.request.width, "Pixels of the field")->check(CLI::Range(1, 1 << 15))->type_name("N");
@@ -200,7 +179,8 @@ void describe(CLI::App& app, BenchCommand& c) {
   app.add_option("--mesh", c.settings.mesh_spacing, "Grid of the meshed rival, scene units; 0: none; default 0.02")
       ->check(CLI::Range(0.0, 1.0))
       ->type_name("H");
-  app.add_flag("!--no-processes", c.settings.processes, "Leaves out whole processes, and so POV-Ray");
+  app.add_flag_callback(
+      "--no-processes", [&c] { c.settings.processes = false; }, "Leaves out whole processes, and so POV-Ray");
   app.add_flag("--long", c.settings.many_samples, "Whole processes with --spp samples too: minutes");
   app.add_option("--spp", c.settings.samples, "Samples of the long processes; default 16, POV-Ray's always 16")
       ->check(CLI::Range(2, 4096))
@@ -245,7 +225,8 @@ ExitCode explain(const CLI::App& app, const CLI::ParseError& error) {
   }
   const std::string help = chosen.empty() ? "marrow" : "marrow " + speaker.get_name();
   const auto extras = speaker.remaining();
-  if (error.get_name() != "ExtrasError" || extras.empty()) return usage_error(error.what(), "", help);
+  if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError) || extras.empty())
+    return usage_error(error.what(), "", help);
   const auto guess = nearest(extras.front(), options_of(speaker));
   return usage_error("'" + extras.front() + "' was not expected", guess ? "did you mean " + *guess + "?" : "", help);
 }

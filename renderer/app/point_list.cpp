@@ -30,8 +30,10 @@ std::vector<Word> words_of(std::string_view line) {
 }
 
 Diagnostic problem(const SourceLocation& where, std::string message, std::size_t length) {
-  return {
-      .where = where, .message = std::move(message), .hint = "a point is x y z", .length = static_cast<int>(length)};
+  return {.where = where,
+          .message = std::move(message),
+          .hint = "a point is x y z, with blanks between",
+          .length = static_cast<int>(length)};
 }
 
 // Nothing and no problem: a line to skip.
@@ -60,6 +62,7 @@ LineResult read_line(std::string_view line, const std::string& name, int number)
 
 Result<std::vector<Vec3d>> read_points(std::istream& in, const std::string& name, SourceCache& sources) {
   std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // a mark that some editors put before UTF-8
   std::vector<Vec3d> points;
   Diagnostics problems;
   int number = 0;

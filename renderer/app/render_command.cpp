@@ -4,15 +4,16 @@
 #include <variant>
 
 #include "renderer/app/commands.h"
+#include "renderer/app/environment.h"
 #include "renderer/app/files.h"
 #include "renderer/app/finish_render.h"
 #include "renderer/app/interrupt.h"
+#include "renderer/app/picture_advice.h"
 #include "renderer/app/picture_outputs.h"
 #include "renderer/app/progress_line.h"
 #include "renderer/app/report.h"
 #include "renderer/app/scene_input.h"
 #include "renderer/geometry/build_surfaces.h"
-#include "renderer/output/image_file.h"
 #include "renderer/scene/read_scene.h"
 #include "renderer/transport/render.h"
 #include "renderer/transport/render_scene.h"
@@ -67,14 +68,6 @@ ExitCode exit_code_of_failed_build(const Diagnostics& why) {
   return in_scene ? ExitCode::BadInput : ExitCode::Unavailable;
 }
 
-// Pictures that were resampled may dip below zero; light does not.
-Result<EnvironmentImage> load_environment(const std::filesystem::path& path) {
-  auto image = read_rgb_image(path);
-  if (!image) return image.why();
-  for (float& sample : image->samples) sample = std::max(sample, 0.0F);
-  return EnvironmentImage{image->width, image->height, std::move(image->samples)};
-}
-
 }  // namespace
 
 ExitCode run(const RenderCommand& command) {
@@ -82,6 +75,7 @@ ExitCode run(const RenderCommand& command) {
   const auto scene = read_scene(command.scene.path, ReadOptions{.overrides = command.scene.overrides}, record);
   if (!scene) return report(scene.why(), record.sources, exit_code_of_failed_load(command.scene));
   report(record.warnings, record.sources, ExitCode::Ok);
+  report(picture_advice(*scene, command.scene), record.sources, ExitCode::Ok);
   const auto prepared = prepare(command, scene->film);
   if (const auto* stop = std::get_if<Stop>(&prepared)) return report(stop->why, stop->code);
   const auto& ready = std::get<Preparation>(prepared);

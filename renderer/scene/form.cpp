@@ -35,11 +35,10 @@ Form<T> whole_number(const std::string& words, const std::string& json,
     const auto value = v.kind == Value::Kind::Plain ? parse(v.text) : std::nullopt;
     if (value) return value;
     const auto real = plain_number(v);
-    const bool has_point = real && v.text.find_first_of(".eE") != std::string::npos && std::floor(*real) == *real;
-    return reader.wrong(v, words,
-                        has_point ? "write " + number_text(*real) + ", without point or exponent"
-                        : real    ? ""
-                                  : hint_of(v));
+    if (!real) return reader.wrong(v, words, hint_of(v));
+    const auto digits = std::fabs(*real) < 1e15 ? fmt::format("{:.0f}", *real) : "";
+    const bool is_allowed = std::floor(*real) == *real && parse(digits);
+    return reader.wrong(v, words, is_allowed ? "write " + digits + ", without point or exponent" : "");
   };
   return form;
 }

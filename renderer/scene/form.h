@@ -110,7 +110,8 @@ Form<std::vector<T>> list_of(const Form<T>& item, std::size_t min = 0, std::size
   form.json = json_of_list(item.json, min, max);
   form.recognises = [](const Value& v) { return v.kind == Value::Kind::List; };
   form.read = [item, min, max, words = form.words](const Value& v, Reader& reader) -> std::optional<std::vector<T>> {
-    if (v.kind != Value::Kind::List || v.items.size() < min || v.items.size() > max) return reader.wrong(v, words);
+    if (v.kind != Value::Kind::List || v.items.size() < min || v.items.size() > max)
+      return reader.wrong(v, words, v.kind == Value::Kind::List && v.items.empty() ? "the list must not be empty" : "");
     std::vector<T> read;
     for (std::size_t i = 0; i < v.items.size(); ++i) {
       const Subject subject(reader, item_of(reader.subject, i));

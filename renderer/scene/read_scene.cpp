@@ -28,17 +28,30 @@ std::optional<SceneDraft> read_values(const Value& scene, Reader& reader) {
   return scene_table().read(scene, reader);
 }
 
-void name_objects(std::vector<ObjectDescription>& objects, Reader& reader) {
-  std::map<std::string, SourceLocation> first;
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    ObjectDescription& object = objects[i];
-    if (object.name.empty()) object.name = "object " + std::to_string(i + 1);
-    const auto [known, is_new] = first.emplace(object.name, object.where);
+std::string default_name(std::size_t i) { return "object " + std::to_string(i + 1); }
+
+// Asked of the text, so that it is told together with what is wrong with the objects themselves.
+void check_object_names(const Value& scene, Reader& reader) {
+  const Member* objects = scene.find("objects");
+  if (objects == nullptr) return;
+  std::map<std::string, Place> first;
+  const auto& items = objects->value.items;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const Member* given = items[i].find("name");
+    const bool is_named = given != nullptr && given->value.is_scalar() && !given->value.text.empty();
+    const std::string name = is_named ? given->value.text : default_name(i);
+    const Place place = is_named ? given->value.place : items[i].place;
+    const auto [known, is_new] = first.emplace(name, place);
     if (is_new) continue;
-    reader.problems.push_back({.where = object.where,
-                               .message = "two objects are called `" + object.name + "`",
-                               .hint = "the first stands in line " + std::to_string(known->second.line)});
+    const SourceLocation there = reader.sources.location(known->second);
+    reader.error(place, "two objects are called `" + name + "`",
+                 "the first stands at " + there.file + ":" + std::to_string(there.line), is_named ? name.size() : 1);
   }
+}
+
+void name_objects(std::vector<ObjectDescription>& objects) {
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    if (objects[i].name.empty()) objects[i].name = default_name(i);
 }
 
 // Objects that name no material share a matt grey one.
@@ -102,9 +115,10 @@ std::optional<SceneDescription> read_all(const std::filesystem::path& path, cons
   if (!options.allow_outside) reader.files.confine_to(path.parent_path());
   merge_includes(*scene, canonical, reader, budget);
   apply_overrides(*scene, options.overrides, reader, budget.values);
+  check_object_names(*scene, reader);
   auto draft = read_values(*scene, reader);
   if (!draft) return std::nullopt;
-  name_objects(draft->objects, reader);
+  name_objects(draft->objects);
   complete_materials(*draft);
   keep_what_is_shared(draft->objects);
   return finished(*std::move(draft), reader.files.hash());

@@ -117,10 +117,12 @@ const Table<SceneDraft>& scene_table() {
   using Scene = SceneDraft;
   static const Table<Scene> table(
       "scene", "The whole file.",
-      {key<Scene>("marrow", &Scene::version, version(), "version of the format").required(),
+      {key<Scene>("marrow", &Scene::version, version(), "a scene begins with `marrow: 1`").required(),
        read_before<Scene>("include", includes(), "files whose `defs` and `materials` are added"),
-       key<Scene>("units", &Scene::units, text(), "what a length of 1 is, for legends and scale bars only"),
-       key<Scene>("up", &Scene::z_up, choice<bool>({{"y", false}, {"z", true}}), "the axis that points up"),
+       key<Scene>("units", &Scene::units, text(),
+                  "what a length of 1 is, for the axes of slices and the headers of files only"),
+       key<Scene>("up", &Scene::z_up, choice<bool>({{"y", false}, {"z", true}}),
+                  "the axis that points up, for images and panels of light; the camera has its own"),
        key<Scene>("camera", &Scene::camera, map_of(camera_table()), "who looks"),
        key<Scene>("film", &Scene::film, map_of(film_table()), "the picture"),
        key<Scene>("render", &Scene::render, map_of(render_table()), "how light is computed"),

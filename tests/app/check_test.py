@@ -31,6 +31,26 @@ class CheckTest(ProgramTest):
         good = self.expect(0, "check", self.write("point.yaml", POINT), "--format", "json").stdout
         self.assertEqual(json.loads(good), [])
 
+    def test_editors_get_the_name_of_a_scene_that_is_not_there(self):
+        found = json.loads(self.expect(66, "check", "gone.yaml", "--format", "json").stdout)
+        self.assertEqual([problem["file"] for problem in found], ["gone.yaml"])
+
+    def test_a_light_whose_picture_is_none_is_a_mistake_of_the_scene(self):
+        self.write("sky.exr", "not a picture")
+        scene = self.write("sky.yaml", POINT.replace("constant: {radiance: [1, 1, 1]}", "image: {file: sky.exr}"))
+        for command in (["check"], ["render", "-o", "x.png"]):
+            told = self.expect(65, command[0], scene, *command[1:]).stderr
+            self.assertIn("sky.yaml:6:", told)
+            self.assertIn("sky.exr", told)
+
+    def test_a_picture_of_nothing_is_warned_of(self):
+        dark = self.write("dark.yaml", POINT.replace("  - constant: {radiance: [1, 1, 1]}\n", "").replace("lights:\n", ""))
+        for command in (["check"], ["render", "-o", "x.png"]):
+            self.assertIn("nothing shines", self.expect(0, command[0], dark, *command[1:]).stderr)
+        for quiet in ("render.integrator=normals", "materials.skin.diffuse.emission=1"):
+            self.assertEqual(self.expect(0, "check", dark, "-D", quiet).stderr, "")
+        self.assertIn("no object", self.expect(0, "check", self.write("empty.yaml", "marrow: 1\n")).stderr)
+
     def test_overrides_are_checked_like_the_file(self):
         scene = self.write("point.yaml", POINT)
         self.expect(0, "check", scene, "-D", "camera.fov=20", "-D", "render.spp=9")

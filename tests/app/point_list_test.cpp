@@ -41,6 +41,10 @@ TEST(PointList, SkipsEmptyLinesAndComments) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->size(), 2u);
   EXPECT_TRUE(read("")->empty());
+  EXPECT_EQ(read("\xEF\xBB\xBF"
+                 "1 2 3\n")
+                ->front(),
+            (Vec3d{1, 2, 3}));
 }
 
 TEST(PointList, TellsEveryBadLineWithItsPlace) {

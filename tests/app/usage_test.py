@@ -18,20 +18,23 @@ class UsageTest(ProgramTest):
         self.assertIn("render", self.expect(2).stderr)
 
     def test_an_unknown_option_names_the_nearest(self):
-        self.assertIn("--spp", self.expect(2, "render", "x.yaml", "--sppp", "3").stderr)
+        self.assertIn("did you mean --spp?", self.expect(2, "render", "x.yaml", "--sppp", "3").stderr)
 
     def test_values_that_mean_nothing_are_refused(self):
         scene = self.write("point.yaml", POINT)
         for wrong in (["--spp", "0"], ["--spp", "many"], ["--time", "soon"], ["--crop", "1,2,3"], ["-t", "0"],
                       ["--crop", "5,5,5,9"], ["-o", "picture.jpg"], ["--view", "no such view"], ["--isa", "mmx"],
-                      ["--progress", "loud"], ["-o", "a.png", "--png", "b.png"]):
+                      ["--progress", "loud"], ["-o", "a.png", "--png", "b.png"], ["--seed", "-1"], ["--seed", "1.5"]):
             with self.subTest(wrong):
                 self.assertNotEqual(self.expect(2, "render", scene, *wrong).stderr, "")
         self.expect(2, "slice", scene)
-        self.expect(2, "slice", scene, "--plane", "w=0")
+        self.assertIn("z=0", self.expect(2, "slice", scene, "--plane", "w=0").stderr)
         self.expect(2, "slice", scene, "--plane", "z=0", "--range", "2:1")
         self.expect(2, "probe", scene)
         self.assertEqual(self.files(), [scene])
+
+    def test_the_largest_seed_is_a_seed(self):
+        self.expect(0, "render", self.write("point.yaml", POINT), "--seed", str(2**64 - 1))
 
     def test_input_that_is_not_there(self):
         for command in (["render"], ["check"], ["info"], ["slice", "--plane", "z=0"], ["probe", "--points", "-"]):

@@ -77,7 +77,7 @@ TEST(MeshFile, EndsOnFilesThatWereCut) {
 
 TEST(MeshFile, RefusesWhatIsNoMesh) {
   EXPECT_FALSE(read_mesh("v 0 0 0\n", "a.stl"));
-  EXPECT_FALSE(read_mesh("", "a.obj"));
+  EXPECT_EQ(read_mesh("", "a.obj").why().front().message, "the file is empty");
   EXPECT_FALSE(read_mesh("hello", "a.ply"));
   EXPECT_FALSE(read_mesh("v 0 0 0\nv 1 0 0\nl 1 2\n", "a.obj"));
   EXPECT_FALSE(read_mesh("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "a.obj"));

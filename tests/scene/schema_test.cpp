@@ -51,7 +51,7 @@ TEST(Schema, TheReferenceInDocsIsCurrent) {
   const auto from = text.str().find(begin), to = text.str().find(end);
   ASSERT_TRUE(from != std::string::npos && to != std::string::npos);
   EXPECT_EQ(text.str().substr(from + begin.size(), to - from - begin.size()), schema_markdown())
-      << "put the output of `scene_tool markdown` between the two marks of docs/scene-format.md";
+      << "scene_tool refresh docs/scene-format.md";
 }
 
 }  // namespace

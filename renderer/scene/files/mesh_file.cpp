@@ -49,6 +49,7 @@ void append(MeshShape& shape, const aiMesh& mesh) {
 Result<MeshShape> read_mesh(std::string_view bytes, const std::string& name) {
   const std::string ending = ending_of(name);
   if (ending != ".obj" && ending != ".ply") return failure("`" + name + "` is neither .obj nor .ply", name);
+  if (bytes.empty()) return failure("the file is empty", name);
   if (!header_ends(bytes, ending)) return failure("not a mesh: the header of the PLY file has no end", name);
   Assimp::Importer importer;
   keep_only_triangles(importer);

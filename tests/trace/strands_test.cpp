@@ -1,0 +1,74 @@
+// The strands of a blend whose angle follows their directions, where more of them crowd around a cell than it may list.
+#include "field/trace/strands.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "tests/trace/stage.h"
+
+namespace marrow::test {
+namespace {
+
+constexpr DirectionBounds bounds{0.6, std::numbers::pi / 2};
+
+// Thin and all near the origin: at their common surface each has 1 / count of the field, and few are far enough for a
+// quadratic to tell them.
+BlendField crowd(Random& random, int count) {
+  BlendField blend = random_scene(random, {4, 1}, 0);
+  for (int k = 0; k < count; ++k) {
+    const Vec3d middle = random.vector(0.05), half = random_direction(random) * 0.15;
+    blend.segments.add({.from = middle - half, .to = middle + half, .radius_from = 0.02, .radius_to = 0.02}, {});
+    blend.segments.strands.push_back(static_cast<std::uint32_t>(k));
+    blend.direction_bounds.push_back(bounds);
+  }
+  return blend;
+}
+
+struct Crowd {
+  explicit Crowd(BlendField field)
+      : stage(std::move(field)), strands(stage.field, stage.sources.pieces(), stage.kernels), context(stage.context) {
+    context.strands = &strands;
+  }
+
+  Stage stage;
+  Strands strands;
+  Block::Context context;
+};
+
+double share_error(const Crowd& crowd, const Block& block, const Vec3d& x) {
+  const BlendField& field = crowd.stage.field;
+  const double alpha = evaluate(field, block.center() + x * block.half()).alpha;
+  const float local[3] = {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)};
+  const PointField found = crowd.stage.kernels.point_field(block.fine().level, field.degree, local);
+  return std::fabs(static_cast<double>(found.share) - (alpha - bounds.least) / (bounds.most - bounds.least));
+}
+
+TEST(Strands, OfACrowdNoMoreAreListedThanTheKernelsHold) {
+  Random random(91);
+  const Crowd crowd(test::crowd(random, 4 * most_strands));
+  int full = 0;
+  double largest_error = 0;
+  for (std::size_t i = 0; i < crowd.stage.cells.size(); i += 20) {
+    const Block block(crowd.context, crowd.stage.cells[i]);
+    const int listed = block.fine().level.strands->count;
+    // The kernels keep them in arrays of this size: nothing may be asked of a block that lists more.
+    ASSERT_LE(listed, most_strands) << "cell " << i;
+    if (listed < most_strands) continue;
+    ++full;
+    for (int k = 0; k < 5; ++k) {
+      const double error = share_error(crowd, block, random.vector(1));
+      largest_error = std::max(largest_error, error);
+      EXPECT_LE(error, block.fine().angle_error) << "cell " << i;
+    }
+  }
+  std::cout << "  " << full << " blocks list all they may; their share of angles is off by " << largest_error
+            << " at most\n";
+  EXPECT_GT(full, 5);
+}
+
+}  // namespace
+}  // namespace marrow::test
