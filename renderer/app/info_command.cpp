@@ -1,10 +1,14 @@
 // marrow info: what a scene is made of, and what it becomes for tracing.
 #include <array>
+#include <cstddef>
+#include <map>
+#include <string>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "field/base/overloaded.h"
+#include "field/blend/blend_field.h"
 #include "renderer/app/commands.h"
 #include "renderer/app/print.h"
 #include "renderer/app/report.h"
@@ -36,6 +40,17 @@ const char* kind_of(const MaterialDescription& material) {
                     material);
 }
 
+// What does not go through the tracer of blends, and why: what is slow of a scene is found here.
+Json general_parts(const FieldProgram& program) {
+  std::map<std::string, std::size_t> reasons;
+  for (const PlacedBlend& part : program.parts())
+    if (const std::string reason = untraceable_part(part.blend); !reason.empty()) ++reasons[reason];
+  if (!program.trees().empty()) reasons["operators, warps and bounded primitives"] = program.trees().size();
+  Json parts = Json::array();
+  for (const auto& [reason, count] : reasons) parts.push_back({{"parts", count}, {"because", reason}});
+  return parts;
+}
+
 Json object_info(const ObjectDescription& object, const FieldObject* field) {
   Json info{{"name", object.name}};
   std::visit(Overloaded{[&](const FieldDescription&) {
@@ -43,6 +58,7 @@ Json object_info(const ObjectDescription& object, const FieldObject* field) {
                           info["primitives"] = field ? primitive_count(field->program) : 0;
                           info["blends"] = field ? field->program.parts().size() : 0;
                           info["extent"] = field ? corners(extent(field->program)) : nullptr;
+                          info["general_tracer"] = field ? general_parts(field->program) : Json::array();
                         },
                         [&](const PlaneShape&) { info["kind"] = "plane"; },
                         [&](const MeshShape& mesh) {
@@ -99,6 +115,10 @@ std::string object_text(const Json& object) {
   if (object.contains("primitives"))
     text += fmt::format(", {} primitives in {} blends, {}", object["primitives"].get<std::size_t>(),
                         object["blends"].get<std::size_t>(), box_text(object["extent"]));
+  if (object.contains("general_tracer"))
+    for (const Json& part : object["general_tracer"])
+      text += fmt::format("\n  {:<12} {} of its parts in the general tracer, which is slower: {}", "",
+                          part["parts"].get<std::size_t>(), part["because"].get<std::string>());
   if (object.contains("triangles")) text += fmt::format(", {} triangles", object["triangles"].get<std::size_t>());
   return text + '\n';
 }

@@ -33,6 +33,14 @@ class InfoTest(ProgramTest):
             self.assertGreater(info[key], 0)
         self.assertLess(info["bounds"]["lower"][0], info["bounds"]["upper"][0])
 
+    def test_what_is_slow_is_told(self):
+        slow = POINT.replace("kernel: {inverse: 4}", "kernel: {cauchy: 4}")
+        told = json.loads(self.expect(0, "info", self.write("slow.yaml", slow), "--json").stdout)
+        self.assertEqual([part["parts"] for part in told["objects"][0]["general_tracer"]], [1])
+        self.assertIn("cauchy", told["objects"][0]["general_tracer"][0]["because"])
+        quick = json.loads(self.expect(0, "info", self.write("point.yaml", POINT), "--json").stdout)
+        self.assertEqual(quick["objects"][0]["general_tracer"], [])
+
     def test_people_get_text(self):
         text = self.expect(0, "info", self.write("point.yaml", POINT)).stdout
         for word in ("ball", "primitives", "tiles", "memory", "bounds", "constant", "diffuse"):
