@@ -195,12 +195,12 @@ SurfacePoint TreeTracer::surface_at(std::size_t cell, const Vec3d& position, con
   const X others = largest_of_others(c.member, at);
   const auto outward = [](const X& g) { return normalize(Vec3d{-g.slope[0], -g.slope[1], -g.slope[2]}); };
   const UnitVec3 normal = outward(f);
-  // Between two members: away from both.
-  const Vec3d between = normal.vec() + outward(others).vec();
+  // Beside another member: away from both, or from one and back.
+  const Vec3d away = others.value > 0 ? outward(others).vec() : normal.vec();
+  const Vec3d ways[] = {normal, normal.vec() + away, -along, away - along, normal.vec() - along, along};
   for (const double likely : {1e-6, 1e-13})  // more than sums are off; no more than rounding
-    for (const Vec3d& direction : {normal.vec(), others.value > 0 ? between : normal.vec(), -along, along})
-      if (const auto outside = outside_along(c, position, direction, likely))
-        return {.normal = normal, .outside = *outside};
+    for (const Vec3d& way : ways)
+      if (const auto outside = outside_along(c, position, way, likely)) return {.normal = normal, .outside = *outside};
   return {.normal = normal, .outside = position};
 }
 
