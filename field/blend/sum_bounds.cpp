@@ -48,6 +48,29 @@ double most_bent(const Profile& profile, const Kernel& kernel) {
   return m < 4 ? inf : m * (m - 2) / (kernel.shape * kernel.shape) / profile.normalisation() * (1 + 1e-9);
 }
 
+// The same times what the support holds of a skeleton. For m = 3 second derivatives are at most 3/R^2 (1-y)^(-1/2), and
+// along a segment R^2 r^2 (1-y) is a parabola, so that the integral from root to root is finite: that of
+// R r / sqrt(Q), Q = (1 - R^2 r'^2) (L^2 - s^2), is at most pi R r / sqrt(1 - R^2 r'^2).
+double held_bend(const Profile& profile, const Kernel& kernel, const auto&, double held) {
+  return most_bent(profile, kernel) * held;
+}
+double held_bend(const Profile& profile, const Kernel& kernel, const SegmentSkeleton& s, double held) {
+  if (profile.degree() != 3) return most_bent(profile, kernel) * held;
+  const double R = kernel.shape, slope = (s.radius_to - s.radius_from) / length(s.to - s.from);
+  const double open = 1 - square(R * slope);
+  if (!(open > 0)) return inf;
+  const double chord = 3.1415927 * R * largest_radius(s) / (least_radius(s) * std::sqrt(open));
+  return 3 / (R * R) / profile.normalisation() * chord * (1 + 1e-9);
+}
+
+// How far first derivatives of the kernel change over a scaled step, at most, where m = 3: they are 3/R^2 x sqrt(1-y),
+// and roots of numbers that differ by d differ by sqrt(d).
+double most_changed(const Profile& profile, const Kernel& kernel, double step) {
+  const double R = kernel.shape;
+  return profile.degree() != 3 ? inf
+                               : 3 / (R * R) / profile.normalisation() * (step + std::sqrt(2 * R * step)) * (1 + 1e-9);
+}
+
 }  // namespace
 
 SumBounds::SumBounds(const Box3& box)
@@ -80,6 +103,26 @@ void SumBounds::add(const SkeletonSample& s, double distance, double radius, int
   error_ += sample_error * s.value;
   slope_error_ += sample_error * (m * s.value / distance);
   S_error_ += sample_error * (m * s.value * radius / distance);
+}
+
+// To second order, or, in boxes so large that it says less, to first.
+void SumBounds::add(const SkeletonSample& s, const Smooth& b) {
+  const double longest = b.steepest * b.radius, S_by = b.most_bent * b.radius * rho_ + compact_error * longest;
+  log_slope_ = inf;
+  low_ += std::max(0.0, s.value * (1 - compact_error) - b.steepest * rho_);
+  f_ += s.value;
+  error_ += compact_error * s.value;
+  if (0.5 * b.most_bent * rho_ < b.steepest) {
+    gradient_ += s.gradient;
+    second_ += b.most_bent;
+    slope_error_ += compact_error * b.steepest;
+  } else {
+    error_ += b.steepest * rho_;
+    slope_error_ += b.steepest;
+  }
+  if (S_by < longest) S_ += s.si_gradient;
+  S_error_ += std::min(longest, S_by) * (1 + 1e-9);
+  J_error_ += b.most_bent * b.radius;
 }
 
 // Within rho distances shrink by 1 - rho / nearest at most, and B3 and B4 hold with the sums of the sources.
@@ -148,7 +191,7 @@ Vec3<Interval> SumBounds::S() const {
 
 Interval SumBounds::J(std::size_t i, std::size_t j) const {
   if (!has_slopes_ || unbounded_) return Interval::everything();
-  return pad(J_.rows[i][j], S_second_ * rho_ + sample_error * std::fabs(J_.rows[i][j]));
+  return pad(J_.rows[i][j], S_second_ * rho_ + sample_error * std::fabs(J_.rows[i][j]) + J_error_);
 }
 
 namespace {
@@ -252,15 +295,20 @@ void SumBounds::add_compact(const BlendField& blend) {
   const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
   const auto all = [&](const auto& skeletons, int dimension, const auto& field) {
     const Profile profile(kernel, dimension);
-    const double steep = steepest(profile, kernel), bent = most_bent(profile, kernel);
+    const double steep = steepest(profile, kernel);
     for (const auto& s : skeletons) {
       const double reach = kernel.shape * largest_radius(s);
       if (distance_to(s, center_) > rho_ + reach) continue;
       const SkeletonSample sample = field(s);
-      const double f = sample.value, per_length = steep * share(s, reach) / least_radius(s) * (1 + 1e-9);
-      const double by = per_length * rho_ + compact_error * f, longest = per_length * largest_radius(s);
-      const double S_by = bent * share(s, reach) * largest_radius(s) / integer_power(least_radius(s), 2) * rho_ +
-                          compact_error * longest;
+      const double held = share(s, reach), least = least_radius(s), largest = largest_radius(s);
+      const double per_length = steep * held / least * (1 + 1e-9);
+      if (const double bend = held_bend(profile, kernel, s, held); bend < inf) {
+        add(sample, Smooth{per_length, bend / (least * least), largest});
+        continue;
+      }
+      const double f = sample.value, by = per_length * rho_ + compact_error * f, longest = per_length * largest;
+      const double S_by =
+          most_changed(profile, kernel, rho_ / least) * held * (largest / least) + compact_error * longest;
       const bool is_near = !(S_by < longest);
       add({.f = {std::max(0.0, f - by), f + by},
            .S = is_near ? Vec3d{} : sample.si_gradient,
@@ -268,7 +316,7 @@ void SumBounds::add_compact(const BlendField& blend) {
            .log_slope = inf});
     }
   };
-  constexpr auto value = Derivatives::ScaleInvariant;
+  constexpr auto value = Derivatives::First;
   const Vec3d& p = center_;
   all(blend.points.skeletons, 0, [&](const PointSkeleton& s) { return point_field<value>(s, p, kernel); });
   all(blend.segments.skeletons, 1, [&](const SegmentSkeleton& s) { return segment_field<value>(s, p, kernel); });
@@ -290,16 +338,48 @@ double turn(const TriangleSkeleton& s, double distance, double rho) {
 }
 double turn(const ArcSkeleton&, double, double) { return inf; }
 
+// |k'| where the scaled distance is off by `moved` at most from where the field is f: it rises to the steepest place of
+// the kernel and falls from there on. The compact kernel has none beyond its support, where only f = 0 is known.
+Interval steepness_near(const Profile& profile, const Kernel& kernel, double f, double moved) {
+  const int m = profile.degree();
+  const bool is_compact = kernel.family == KernelFamily::Compact;
+  const double size = is_compact ? kernel.shape : 1 / kernel.shape;
+  // (x / size)^2 from k; a relative 1e-9 of it or of 1 stands for the error of the sample.
+  const double ratio = std::min(1.0, f * profile.normalisation());
+  const double y = is_compact ? 1 - pow(ratio, 2.0 / m) : ratio > 0 ? pow(ratio, -2.0 / m) - 1 : inf;
+  const double near = std::max(0.0, size * std::sqrt(std::max(0.0, y - 1e-9 * (1 + y))) - moved);
+  const double far = f > 0 ? size * std::sqrt(y + 1e-9 * (1 + y)) + moved : inf;
+  const auto slope = [&](double x) {
+    if (!(is_compact ? x < size : x < inf)) return 0.0;
+    return std::fabs(2 * x * profile.at(x * x).slope) / profile.normalisation();
+  };
+  const double top = size / std::sqrt(is_compact ? m - 1.0 : m + 1.0), a = slope(near), b = slope(far);
+  const bool has_top = near * (1 - 1e-9) <= top && top <= far * (1 + 1e-9);
+  const double most = has_top ? steepest(profile, kernel) : std::max(a, b);
+  return {std::min(a, b) * (1 - 1e-9), most * (1 + 1e-9)};
+}
+
 // e = min d / radius changes by rho / radius at most, f = k(e), |S| = |k'(e)|.
 template <class Skeleton>
 SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, const Kernel& kernel) {
   const SkeletonSample sample = distance_field<Derivatives::ScaleInvariant>(s, sum.center(), kernel);
   const double f = sample.value, moved = sum.rho() / least_radius(s), distance = distance_to(s, sum.center());
+  const double turned = distance > sum.rho() ? turn(s, distance, sum.rho()) : inf;
+  // S between its least and largest length, turned by as much.
+  const auto give_S = [&](SumBounds::Between& b, double S_low, double S_high) {
+    b.S_by = S_high;
+    if (!(turned < 1 && length(sample.si_gradient) > 0)) return;
+    b.S = normalize(sample.si_gradient) * (0.5 * (S_low + S_high));
+    b.S_by = (0.5 * (S_high - S_low) + S_high * turned) * (1 + 1e-9);
+  };
   if (kernel.family != KernelFamily::Inverse) {
-    const double steep = steepest(Profile(kernel, 0), kernel) * (1 + 1e-9), by = steep * moved + 1e-10 * f;
-    return {.f = {std::max(0.0, f - by), f + by},
-            .S_by = steep,
-            .log_slope = f > by ? steep / (least_radius(s) * (f - by)) : inf};
+    const Profile profile(kernel, 0);
+    const double steep = steepest(profile, kernel) * (1 + 1e-9), by = steep * moved + 1e-10 * f;
+    SumBounds::Between b{.f = {std::max(0.0, f - by), f + by},
+                         .log_slope = f > by ? steep / (least_radius(s) * (f - by)) : inf};
+    const Interval lengths = steepness_near(profile, kernel, f, moved);
+    give_S(b, lengths.lo, lengths.hi);
+    return b;
   }
   const int n = kernel.degree;
   const double e = std::isfinite(f) ? pow(f, -1.0 / (n - 1)) : 0, by = moved + 1e-10 * e;
@@ -309,12 +389,7 @@ SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, cons
   SumBounds::Between b{.f = {(1 - 1e-10) / integer_power(far, n - 1), (1 + 1e-10) / integer_power(near, n - 1)},
                        .S_by = S_high,
                        .log_slope = (n - 1) * (1 + 1e-10) / (near * least_radius(s))};
-  const double turned = distance > sum.rho() ? turn(s, distance, sum.rho()) : inf;
-  if (turned < 1) {
-    const double S_low = (n - 1) * (1 - 1e-10) / integer_power(far, n);
-    b.S = normalize(sample.si_gradient) * (0.5 * (S_low + S_high));
-    b.S_by = (0.5 * (S_high - S_low) + S_high * turned) * (1 + 1e-9);
-  }
+  give_S(b, (n - 1) * (1 - 1e-10) / integer_power(far, n), S_high);
   return b;
 }
 

@@ -27,6 +27,11 @@ class SumBounds {
     double log_slope;  ///< of |grad ln f|
   };
   void add(const Between&);
+  /// A primitive of which the largest first and second derivatives anywhere are known, up to a radius.
+  struct Smooth {
+    double steepest, most_bent, radius;
+  };
+  void add(const SkeletonSample&, const Smooth&);
   /// Sources: the same from one remainder for all of them.
   void add(const SourceSums&);
 
@@ -56,6 +61,7 @@ class SumBounds {
   Vec3d center_;
   double rho_;
   double f_ = 0, low_ = 0, error_ = 0, slope_error_ = 0, S_error_ = 0, second_ = 0, S_second_ = 0, log_slope_ = 0;
+  double J_error_ = 0;
   Vec3d gradient_{}, S_{};
   Matrix3 J_{};
   bool unbounded_ = false, has_slopes_ = true;

@@ -10,8 +10,12 @@ namespace {
 
 using OnRay = Jet<Interval, 1>;
 
-// Bounds that do not shrink with the piece could be halved for ever. What is left then is reported as undecided.
-constexpr std::uint32_t most_evaluations = 2000;
+// Bounds that do not shrink with the piece could be halved for ever. After the first so many evaluations, and again
+// after each further so many, gaps count as short that are 16 times as long: what is left undecided is reported, and
+// what lies behind it is still searched.
+constexpr std::uint32_t first_evaluations = 2000, more_evaluations = 500;
+// Sums are not known any better: a piece that stays so near to 1, on one side at its ends, cannot be decided.
+constexpr double sums_are_off = 1e-10;
 constexpr double inf = std::numeric_limits<double>::infinity();
 
 enum class Side { Unknown, Outside, Inside };
@@ -91,7 +95,11 @@ class Search {
       if (piece.crosses()) found_.t = placed(piece);
       return;
     }
-    if (is_short(piece) || found_.evaluations >= most_evaluations) {
+    if (found_.evaluations >= allowed_) {
+      allowed_ += more_evaluations;
+      coarseness_ *= 16;
+    }
+    if (length(piece) <= coarseness_ * gap(piece.end) || is_flat(f.value, piece)) {
       give_up(piece);
       return;
     }
@@ -122,7 +130,13 @@ class Search {
   void give_up(Piece piece) {
     learn_sides(piece);
     if (!piece.crosses() || !is_short(piece)) found_.undecided = std::min(found_.undecided, piece.begin);
-    if (piece.crosses()) found_.t = is_short(piece) ? piece.end : placed(piece);
+    if (piece.crosses()) found_.t = placed(piece);
+  }
+
+  bool is_flat(const Interval& f, Piece& piece) {
+    if (!(1 - f.lo < sums_are_off && f.hi - 1 < sums_are_off)) return false;
+    learn_sides(piece);
+    return !piece.crosses();
   }
 
   // Of t, or of the coordinates that the ray runs through.
@@ -130,7 +144,8 @@ class Search {
   // Sums of a blend are known to 3e-11 of themselves: shorter pieces than 2^-34 (6e-11) say nothing new. It is far
   // below the ulp of a float.
   double gap(double t) const { return 0x1p-34 * size(t); }
-  bool is_short(const Piece& piece) const { return piece.end - piece.begin <= gap(piece.end); }
+  static double length(const Piece& piece) { return piece.end - piece.begin; }
+  bool is_short(const Piece& piece) const { return length(piece) <= gap(piece.end); }
 
   // The one change of side, by regula falsi that halves the weight of an end that stays (the Illinois rule), with
   // halving where that is slow. The end on the far side is returned: t is never before the surface.
@@ -159,6 +174,8 @@ class Search {
   std::uint32_t record_;
   const Ray& ray_;
   bool any_;
+  std::uint32_t allowed_ = first_evaluations;
+  double coarseness_ = 1;  // of what is short, over gap()
   std::vector<Piece> open_;
   CrossingSearch found_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include <tbb/parallel_for.h>
@@ -16,6 +17,8 @@ constexpr int first_levels = 3;
 // Of more members than this, those without operators are not divided: a ray that meets the box of one has few others
 // to meet, and a search along it takes less than cells take memory.
 constexpr std::size_t few_members = 64;
+// Of so many members at most, all are asked at a crossing whether it is inside them: 2 us.
+constexpr std::size_t most_asked = 1024;
 Vec3<Interval> span_of(const Box3& box) {
   return {{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
 }
@@ -43,6 +46,7 @@ Box3 trimmed(const FieldTree& tree, const Member& member) {
 Result<TreeTracer> TreeTracer::make(FieldTree tree) {
   TreeTracer made(std::move(tree));
   const std::vector<Member> all = members(made.tree_);
+  if (all.size() > 1 && all.size() <= most_asked) made.members_ = all;
   for (const Member& member : all) {
     if (member.bounds.empty()) continue;
     if (!(is_finite(member.bounds.lower) && is_finite(member.bounds.upper)))
@@ -124,10 +128,35 @@ std::optional<TreeHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, b
   Interval t = clip(c.box, ray);
   log.enter = t.lo;
   if (any) t.hi = std::min(t.hi, ray.t_max);
-  if (!(t.lo <= t.hi)) return {};
-  CellSearch search(ray, any, log);
-  const auto hit = c.part != nullptr ? search.in(*c.part, t) : search.in(tree_, c.member, t, nullptr);
-  return hit && hit->t <= ray.t_max ? hit : std::nullopt;
+  Ray onward = ray;
+  while (t.lo <= t.hi) {
+    // Any crossing is told by a place behind it: not what is_covered() asks for.
+    CellSearch search(onward, any && members_.empty(), log);
+    const auto hit = c.part != nullptr ? search.in(*c.part, t) : search.in(tree_, c.member, t, nullptr);
+    if (!hit || hit->t > ray.t_max) return {};
+    if (members_.empty() || !is_covered(c.member, ray, hit->t)) return hit;
+    onward.t_min = t.lo = std::max(hit->t, std::nextafter(t.lo, Box3::inf));
+  }
+  return {};
+}
+
+// Whether another member is all around a crossing. For a ray from outside it is so only behind a crossing of that
+// member: what is asked is the place before the crossing, by more than crossings are misplaced.
+bool TreeTracer::is_covered(std::uint32_t member, const Ray& ray, double t) const {
+  constexpr double sums_are_off = 1e-6;
+  const double size = std::max(std::fabs(t), max_component(abs(ray.origin)));
+  const Vec3d p = ray.at(std::max(ray.t_min, t - 64 * rounding::ulp * size));
+  return largest_of_others(member, p) > 1 + sums_are_off;
+}
+
+// Of those that can be 1 at p, a point.
+template <Number X>
+X TreeTracer::largest_of_others(std::uint32_t member, const Vec3<X>& p) const {
+  X largest(0.0);
+  const Vec3d at{lower(p.x), lower(p.y), lower(p.z)};
+  for (const Member& other : members_)
+    if (other.record != member && other.bounds.contains(at)) largest = max(largest, value(tree_, p, other.record));
+  return largest;
 }
 
 // use(tree, record) of what is equal to the member at p.
@@ -137,22 +166,42 @@ auto TreeTracer::with_field_near(const Cell& cell, const Vec3d& p, const Use& us
   return is_near ? use(cell.part->leaf_at(p).tree(), FieldTree::whole) : use(tree_, cell.member);
 }
 
-// Beside the surface: the shortest of growing steps after which the field is certainly below 1.
-SurfacePoint TreeTracer::surface_at(std::size_t cell, const Vec3d& position) const {
+// The shortest of growing steps after which the field is certainly below 1. Where no bounds tell within a thousandth of
+// the cell, the shortest after which it is below 1 by more than `likely` as summed.
+std::optional<Vec3d> TreeTracer::outside_along(const Cell& c, const Vec3d& position, const Vec3d& direction,
+                                               double likely) const {
+  constexpr double longest = 1e-3, rounding_of_sums = 1e-12;
+  std::optional<Vec3d> summed;
+  const double shortest = 4 * rounding::ulp * std::max(largest_coordinate(c.box), c.box.size().x);
+  for (double step = shortest; step < std::max(longest * c.box.size().x, 16 * shortest); step *= 2) {
+    const Vec3d p = position + direction * step;
+    const auto field_at = [&]<Number X>(const Vec3<X>& there) {
+      const auto own = [&](const FieldTree& tree, std::uint32_t record) { return value(tree, there, record); };
+      return max(with_field_near(c, p, own), largest_of_others(c.member, there));
+    };
+    const Interval enclosed = field_at(Vec3<Interval>{Interval(p.x), Interval(p.y), Interval(p.z)});
+    if (enclosed.hi < 1 - rounding_of_sums) return p;
+    if (!summed && enclosed.lo < 1 && field_at(p) < 1 - likely) summed = p;
+  }
+  return summed;
+}
+
+SurfacePoint TreeTracer::surface_at(std::size_t cell, const Vec3d& position, const Vec3d& along) const {
   using X = Jet<double, 3>;
   const Cell& c = cells_[cell];
   const Vec3<X> at{X::variable(position.x, 0), X::variable(position.y, 1), X::variable(position.z, 2)};
   const X f = with_field_near(c, position,
                               [&](const FieldTree& tree, std::uint32_t record) { return value(tree, at, record); });
-  SurfacePoint out{.normal = normalize(Vec3d{-f.slope[0], -f.slope[1], -f.slope[2]}), .outside = position};
-  const double size = std::max(largest_coordinate(c.box), c.box.size().x);
-  for (double step = 4 * rounding::ulp * size; step < size; step *= 2) {
-    const Vec3d p = out.outside = position + out.normal * step;
-    const Vec3<Interval> there{Interval(p.x), Interval(p.y), Interval(p.z)};
-    const auto enclosed = [&](const FieldTree& tree, std::uint32_t record) { return value(tree, there, record); };
-    if (with_field_near(c, p, enclosed).hi < 1) break;
-  }
-  return out;
+  const X others = largest_of_others(c.member, at);
+  const auto outward = [](const X& g) { return normalize(Vec3d{-g.slope[0], -g.slope[1], -g.slope[2]}); };
+  const UnitVec3 normal = outward(f);
+  // Beside another member: away from both, or from one and back.
+  const Vec3d away = others.value > 0 ? outward(others).vec() : normal.vec();
+  const Vec3d ways[] = {normal, normal.vec() + away, -along, away - along, normal.vec() - along, along};
+  for (const double likely : {1e-6, 1e-13})  // more than sums are off; no more than rounding
+    for (const Vec3d& way : ways)
+      if (const auto outside = outside_along(c, position, way, likely)) return {.normal = normal, .outside = *outside};
+  return {.normal = normal, .outside = position};
 }
 
 MaterialId TreeTracer::material_at(std::size_t cell, const Vec3d& position) const {

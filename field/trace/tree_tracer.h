@@ -1,12 +1,12 @@
 // Certified ray tracing of a tree of general nodes.
 //
-// Each member of a crisp union is traced by itself: the nearest hit of all is that of the union, seen from outside. For
-// each of them there is an octree over the box that can hold its surface: parts that bounds prove to be all outside or
-// all inside are dropped, the others are divided, when rays come, until the surface in them is one sheet to all
-// appearances. Each cell keeps the tree restricted to it. Of a union of very many, a member without operators is one
-// cell. Along a ray, enclosures of the field and of its slope tell intervals without a root from those with exactly
-// one; what remains is divided around its middle.   [interval Newton isolation: Moore 1966; pruned programs: Keeter
-// 2020]
+// Each member of a crisp union is traced by itself: the nearest hit of all is that of the union, seen from outside; of
+// up to 1024 members, crossings inside another one are passed, so that it is from inside too. For each of them there is
+// an octree over the box that can hold its surface: parts that bounds prove to be all outside or all inside are
+// dropped, the others are divided, when rays come, until the surface in them is one sheet to all appearances. Each cell
+// keeps the tree restricted to it. Of a union of very many, a member without operators is one cell. Along a ray,
+// enclosures of the field and of its slope tell intervals without a root from those with exactly one; what remains is
+// divided around its middle.   [interval Newton isolation: Moore 1966; pruned programs: Keeter 2020]
 #pragma once
 
 #include <cstddef>
@@ -41,7 +41,9 @@ class TreeTracer {
   /// depend on ray.t_max. With `any`, any crossing. `undecided` of the log: a gap of 2^-34 of t, without a change of
   /// side from end to end, in which no bound excludes a touch.
   std::optional<TreeHit> first_hit(std::size_t cell, const Ray&, bool any, CellLog&) const;
-  SurfacePoint surface_at(std::size_t cell, const Vec3d& position) const;
+  /// `along`: of the ray that met it. Where a field jumps, or members of a union meet, further rays may have to start
+  /// beside it instead of in the direction of the normal.
+  SurfacePoint surface_at(std::size_t cell, const Vec3d& position, const Vec3d& along = {}) const;
 
   const FieldTree& tree() const { return tree_; }
   /// Of the leaf that counts most at a hit; invalid: the object's own.
@@ -58,11 +60,16 @@ class TreeTracer {
   };
   explicit TreeTracer(FieldTree tree) : tree_(std::move(tree)) {}
   void divide(const Member&);
+  std::optional<Vec3d> outside_along(const Cell&, const Vec3d& position, const Vec3d& direction, double likely) const;
+  bool is_covered(std::uint32_t member, const Ray&, double t) const;
+  template <Number X>
+  X largest_of_others(std::uint32_t member, const Vec3<X>& p) const;
   template <class Use>
   auto with_field_near(const Cell&, const Vec3d& p, const Use&) const;
 
   FieldTree tree_;
   Box3 bounds_;
+  std::vector<Member> members_;  ///< of a union, where there are few enough to ask all of them at a crossing
   std::vector<std::unique_ptr<const TreeCell>> roots_;
   std::vector<Cell> cells_;
 };

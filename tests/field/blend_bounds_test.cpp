@@ -66,6 +66,67 @@ TEST(BlendBounds, HoldAtPointsOfTheBox) {
   EXPECT_GT(sloped, 5000);
 }
 
+// Kernels of finite heights, with the distance model and any angle.
+BlendField blend_of_finite_height(Random& random) {
+  BlendField blend;
+  blend.degree = random.whole(3, 7);
+  blend.kernel = random.between(0, 1) < 0.7 ? KernelFamily::Compact : KernelFamily::Cauchy;
+  blend.kernel_shape = random.between(1.2, 3);
+  blend.alpha = random.between(0, 1) < 0.4 ? std::numbers::pi / 2 : random.between(0, 1.5);
+  if (random.between(0, 1) < 0.5) blend.projection = Projection::Exact;
+  for (int i = random.whole(1, 3); i > 0; --i) {
+    const int kind = random.whole(0, 9);
+    if (kind < 3) blend.points.add(random.point(), {});
+    if (kind >= 3 && kind < 7) blend.segments.add(random.segment(), {});
+    if (kind == 7 || kind == 8) blend.distance_segments.add(random.segment(), {});
+    if (kind == 9) blend.arcs.add(random.arc(), {});
+  }
+  return blend;
+}
+
+TEST(BlendBounds, HoldForKernelsOfFiniteHeight) {
+  Random random(54);
+  int sloped = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const BlendField blend = blend_of_finite_height(random);
+    const Vec3d center = random.vector(2);
+    const double half = pow(10, random.between(-5, -0.2));
+    const BlendBounds bounds = blend_bounds(blend, Box3{center, center}.padded(half));
+    for (int k = 0; k < 8; ++k) {
+      const BlendSample s = evaluate(blend, center + random.vector(half));
+      ASSERT_TRUE(bounds.value.contains(s.corrected))
+          << "case " << i << " of half size " << half << ": " << s.corrected << " not in [" << bounds.value.lo << ", "
+          << bounds.value.hi << "], degree " << blend.degree;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Interval& g = bounds.gradient[axis];
+        const double slack = 1e-8 * (1 + length(s.corrected_gradient));
+        ASSERT_TRUE(g.lo - slack <= s.corrected_gradient[axis] && s.corrected_gradient[axis] <= g.hi + slack)
+            << "case " << i << " axis " << axis << " of half size " << half << ": " << s.corrected_gradient[axis]
+            << " not in [" << g.lo << ", " << g.hi << "], degree " << blend.degree;
+        sloped += g.hi - g.lo < 1e300;
+      }
+    }
+  }
+  EXPECT_GT(sloped, 5000);
+}
+
+// To nothing in the end, but for the edge of a support that an arc follows.
+TEST(BlendBounds, NarrowForKernelsOfFiniteHeight) {
+  Random random(55);
+  int near = 0;
+  for (int i = 0; i < 600; ++i) {
+    BlendField blend = blend_of_finite_height(random);
+    blend.arcs = {};
+    const Vec3d p = random.vector(1.5);
+    const BlendSample s = evaluate(blend, p);
+    if (!(s.corrected > 0.3 && s.corrected < 1.5)) continue;
+    ++near;
+    const double width = blend_bounds(blend, Box3{p, p}.padded(1e-9)).value.width();
+    EXPECT_LT(width, 1e-4) << "case " << i << " degree " << blend.degree;
+  }
+  EXPECT_GT(near, 50);
+}
+
 TEST(BlendBounds, NarrowWithTheBox) {
   Random random(52);
   for (int i = 0; i < 40; ++i) {

@@ -21,7 +21,7 @@ class RandomTree {
   /// A tree of some levels.
   FieldTree make(int levels) {
     add(levels);
-    return FieldTree(nodes_, records_, children_);
+    return tree();
   }
   /// One node of a kind over balls.
   template <class Kind>
@@ -29,10 +29,10 @@ class RandomTree {
     std::vector<std::uint32_t> balls;
     for (std::size_t i = 0; i < count; ++i) balls.push_back(leaf(random_node<Sphere>(0, random_)));
     record(random_node<Kind>(count, random_), balls);
-    return FieldTree(nodes_, records_, children_);
+    return tree();
   }
 
- private:
+  /// Node by node: the last one added is the root.
   std::uint32_t record(TreeNode node, const std::vector<std::uint32_t>& of) {
     nodes_->push_back(std::move(node));
     FieldTree::Record r;
@@ -46,6 +46,7 @@ class RandomTree {
   }
   std::uint32_t leaf(TreeNode node) { return record(std::move(node), {}); }
 
+  /// A random node over some levels of others.
   std::uint32_t add(int levels) {
     if (!records_.empty() && random_.between(0, 1) < 0.1)  // shared
       return static_cast<std::uint32_t>(random_.whole(0, static_cast<int>(records_.size()) - 1));
@@ -54,6 +55,9 @@ class RandomTree {
       if (const auto made = add_of(kind, levels, std::make_index_sequence<kinds>())) return *made;
     }
   }
+  FieldTree tree() const { return FieldTree(nodes_, records_, children_); }
+
+ private:
   template <std::size_t... I>
   std::optional<std::uint32_t> add_of(std::size_t kind, int levels, std::index_sequence<I...>) {
     std::optional<std::uint32_t> made;

@@ -43,12 +43,14 @@ struct Cone {
     const X across = s * (height / side) - z * (growth / side), along = s * (growth / side) + z * (height / side);
     const X low = -z, high = z - height, zero(0.0);
     const X inside = max(max(low, high), across);
+    // On the surface itself the inner distance counts: lengths have no slope at 0.
     return piecewise(
-        inside, 0, [](const X& depth) { return depth; },
+        -inside, 0,
         [&](const X&) {
           const X bottom = length(max(s, zero), z), top = length(max(r - radius.back(), zero), high);
           return min(length(across, excess(along, side)), min(bottom, top));
-        });
+        },
+        [](const X& depth) { return -depth; });
   }
 };
 
