@@ -14,26 +14,26 @@
 namespace marrow {
 namespace {
 
-// The place q of a skeleton with the smallest scaled distance, and how it and its radius move with p: 0 at ends and
-// corners, where it stays.
+// The place q of a skeleton with the smallest scaled distance, as p - q (which loses nothing however far both are from
+// the origin), and how it and its radius move with p: 0 at ends and corners, where it stays.
 struct Nearest {
-  Vec3d at;
+  Vec3d to_point;
   double radius;
   Matrix3 moves{};
   Vec3d radius_gradient{};
 
-  double scaled_squared(const Vec3d& p) const { return length_squared(p - at) / (radius * radius); }
+  double scaled_squared() const { return length_squared(to_point) / (radius * radius); }
 };
 
 // f = k(y), y = |v|^2 / tau^2. As e is stationary at q, grad y = 2 v / tau^2; in the Jacobian of
 // grad_S f = 2 k'(y) v / tau place and radius move.
 template <Derivatives Order>
-SkeletonSample sample_at(const Nearest& q, const Vec3d& p, const Kernel& kernel) {
-  const Vec3d v = p - q.at;
+SkeletonSample sample_at(const Nearest& q, const Kernel& kernel) {
+  const Vec3d v = q.to_point;
   const double tau = q.radius;
   if (kernel.family == KernelFamily::Inverse && v == Vec3d{}) return SkeletonSample::on_skeleton();
   const Profile profile(kernel, 0);
-  const auto [value, slope, curvature] = profile.at(q.scaled_squared(p));
+  const auto [value, slope, curvature] = profile.at(q.scaled_squared());
   const double k = 2 * slope / profile.normalisation();
   SkeletonSample s;
   s.value = value / profile.normalisation();
@@ -49,8 +49,8 @@ SkeletonSample sample_at(const Nearest& q, const Vec3d& p, const Kernel& kernel)
 
 // Along a curve q(t) with q' and q'' and radius slope, where ln e = ln |p - q| - ln tau is stationary at q:
 // dt/dp = (q'/d^2 - 2 (v.q') v/d^4) / (ln e)''.
-void let_move(Nearest& q, const Vec3d& p, const Vec3d& first, const Vec3d& second, double radius_slope) {
-  const Vec3d v = p - q.at;
+void let_move(Nearest& q, const Vec3d& first, const Vec3d& second, double radius_slope) {
+  const Vec3d v = q.to_point;
   const double d2 = length_squared(v), along = dot(v, first) / d2, fall = radius_slope / q.radius;
   const double bend = (length_squared(first) - dot(v, second)) / d2 - 2 * along * along + fall * fall;
   if (!(bend > 0) || !(d2 > 0)) return;
@@ -59,26 +59,25 @@ void let_move(Nearest& q, const Vec3d& p, const Vec3d& first, const Vec3d& secon
   q.radius_gradient = t_gradient * radius_slope;
 }
 
-Nearest nearer(const Nearest& a, const Nearest& b, const Vec3d& p) {
-  return b.scaled_squared(p) < a.scaled_squared(p) ? b : a;
-}
+Nearest nearer(const Nearest& a, const Nearest& b) { return b.scaled_squared() < a.scaled_squared() ? b : a; }
 
 // With the foot at tau_f and height h, e is stationary at sigma h^2 / tau_f beyond the foot, a minimum for tau_f > 0.
 //                                                                                          [field-maths 3.2]
 Nearest nearest_of(const SegmentSkeleton& s, const Vec3d& p) {
   const double length = marrow::length(s.to - s.from);
-  const Vec3d u = (s.to - s.from) / length;
-  const double foot = dot(p - s.from, u), slope = (s.radius_to - s.radius_from) / length;
+  const Vec3d u = (s.to - s.from) / length, from_start = p - s.from;
+  const double foot = dot(from_start, u), slope = (s.radius_to - s.radius_from) / length;
   const double foot_radius = s.radius_from + slope * foot;
   if (foot_radius > 0) {
-    const double t = foot + slope * length_squared(p - s.from - u * foot) / foot_radius;
+    const Vec3d across = from_start - u * foot;
+    const double ahead = slope * length_squared(across) / foot_radius, t = foot + ahead;
     if (t > 0 && t < length) {
-      Nearest inside{s.from + u * t, s.radius_from + slope * t};
-      let_move(inside, p, u, {}, slope);
+      Nearest inside{across - u * ahead, s.radius_from + slope * t};
+      let_move(inside, u, {}, slope);
       return inside;
     }
   }
-  return nearer({s.from, s.radius_from}, {s.to, s.radius_to}, p);
+  return nearer({from_start, s.radius_from}, {p - s.to, s.radius_to});
 }
 
 // In the plane likewise, with the gradient of the radius in place of the slope. `inside` when it is in the triangle.
@@ -92,16 +91,16 @@ PlaneNearest nearest_in_plane(const TriangleSkeleton& s, const Vec3d& p) {
   // dual vectors: barycentric coordinates are dot(x - vertex 0, dual)
   const Vec3d dual1 = cross(b, normal) / area2, dual2 = cross(normal, a) / area2;
   const Vec3d rise = dual1 * (s.radii[1] - s.radii[0]) + dual2 * (s.radii[2] - s.radii[0]);
-  const double height = dot(p - s.vertices[0], normal) / std::sqrt(area2);
-  const Vec3d foot = p - normal * (dot(p - s.vertices[0], normal) / area2);
-  const double foot_radius = s.radii[0] + dot(foot - s.vertices[0], rise);
+  const Vec3d n = normal / std::sqrt(area2), from_corner = p - s.vertices[0];
+  const double height = dot(from_corner, n);
+  const Vec3d over = n * height, foot = from_corner - over;
+  const double foot_radius = s.radii[0] + dot(foot, rise);
   if (!(foot_radius > 0)) return {{}, false};
-  const Vec3d q = foot + rise * (height * height / foot_radius), from = q - s.vertices[0];
-  const double first = dot(from, dual1), second = dot(from, dual2);
+  const Vec3d beside = rise * (height * height / foot_radius), q = foot + beside;
+  const double first = dot(q, dual1), second = dot(q, dual2);
   if (!(first >= 0 && second >= 0 && first + second <= 1)) return {{}, false};
-  Nearest at{q, s.radii[0] + dot(from, rise)};
+  Nearest at{over - beside, s.radii[0] + dot(q, rise)};
   // q = foot + rise height^2 / tau_f, by the chain rule
-  const Vec3d n = normal / std::sqrt(area2);
   const Vec3d step = n * (2 * height / foot_radius) - rise * (height * height / (foot_radius * foot_radius));
   at.moves = Matrix3::scaled_identity(1) + Matrix3::outer(n, n) * -1.0 + Matrix3::outer(rise, step);
   at.radius_gradient = at.moves.transposed_times(rise);
@@ -110,10 +109,10 @@ PlaneNearest nearest_in_plane(const TriangleSkeleton& s, const Vec3d& p) {
 
 Nearest nearest_of(const TriangleSkeleton& s, const Vec3d& p) {
   if (const auto [at, inside] = nearest_in_plane(s, p); inside) return at;
-  Nearest best{s.vertices[0], s.radii[0]};
+  Nearest best{p - s.vertices[0], s.radii[0]};
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
-    best = nearer(best, nearest_of(SegmentSkeleton{s.vertices[i], s.vertices[j], s.radii[i], s.radii[j]}, p), p);
+    best = nearer(best, nearest_of(SegmentSkeleton{s.vertices[i], s.vertices[j], s.radii[i], s.radii[j]}, p));
   }
   return best;
 }
@@ -121,7 +120,6 @@ Nearest nearest_of(const TriangleSkeleton& s, const Vec3d& p) {
 // An arc as a curve over the angle.
 struct ArcCurve {
   ArcView view;
-  Vec3d p;
   double radius_begin, radius_slope;
 
   double radius(double angle) const { return radius_begin + radius_slope * (angle - view.begin); }
@@ -135,14 +133,14 @@ struct ArcCurve {
   }
   Nearest at(double angle) const {
     const auto half = sincos(angle / 2);
-    return {p - view.from_arc(half), radius(angle)};
+    return {view.from_arc(half), radius(angle)};
   }
   Nearest moving_at(double angle) const {
     Nearest q = at(angle);
     const auto [sine, cosine] = sincos(angle);
     const Vec3d first = (view.tangential * cosine - view.radial * sine) * view.major;
     const Vec3d second = (view.radial * cosine + view.tangential * sine) * -view.major;
-    let_move(q, p, first, second, radius_slope);
+    let_move(q, first, second, radius_slope);
     return q;
   }
 };
@@ -158,10 +156,10 @@ double minimum_between(const ArcCurve& curve, double low, double high) {
 
 Nearest nearest_of(const ArcSkeleton& s, const Vec3d& p) {
   const ArcView view = view_from(s, p);
-  const ArcCurve curve{view, p, s.radius_from, (s.radius_to - s.radius_from) / (view.end - view.begin)};
+  const ArcCurve curve{view, s.radius_from, (s.radius_to - s.radius_from) / (view.end - view.begin)};
   const bool is_closed = s.end - s.begin >= 2 * std::numbers::pi * (1 - 1e-12);
   if (curve.radius_slope == 0 && (is_closed || (view.begin <= 0 && view.end >= 0))) return curve.moving_at(0);
-  Nearest best = nearer(curve.at(view.begin), curve.at(view.end), p);
+  Nearest best = nearer(curve.at(view.begin), curve.at(view.end));
   if (curve.radius_slope == 0) return best;
   // e^2 is a sine against a parabola and has few minima in a turn; each is wider than a 64th of it but where the radius
   // falls to less than that share, or the minima are level with each other
@@ -170,12 +168,12 @@ Nearest nearest_of(const ArcSkeleton& s, const Vec3d& p) {
   for (int i = 0; i < parts; ++i) {
     const double low = view.begin + step * i, high = i + 1 == parts ? view.end : view.begin + step * (i + 1);
     if (curve.slope(low) < 0 && curve.slope(high) >= 0)
-      best = nearer(best, curve.moving_at(minimum_between(curve, low, high)), p);
+      best = nearer(best, curve.moving_at(minimum_between(curve, low, high)));
   }
   return best;
 }
 
-NearestPlace place_of(const Nearest& q) { return {q.at, q.radius, !(q.moves == Matrix3{})}; }
+NearestPlace place_of(const Nearest& q) { return {q.to_point, q.radius, !(q.moves == Matrix3{})}; }
 
 }  // namespace
 
@@ -185,15 +183,15 @@ NearestPlace nearest_place(const ArcSkeleton& s, const Vec3d& p) { return place_
 template <Derivatives Order>
 SkeletonSample distance_field(const SegmentSkeleton& s, const Vec3d& p, const Kernel& kernel) {
   if (s.from == s.to) return {};
-  return sample_at<Order>(nearest_of(s, p), p, kernel);
+  return sample_at<Order>(nearest_of(s, p), kernel);
 }
 template <Derivatives Order>
 SkeletonSample distance_field(const TriangleSkeleton& s, const Vec3d& p, const Kernel& kernel) {
-  return sample_at<Order>(nearest_of(s, p), p, kernel);
+  return sample_at<Order>(nearest_of(s, p), kernel);
 }
 template <Derivatives Order>
 SkeletonSample distance_field(const ArcSkeleton& s, const Vec3d& p, const Kernel& kernel) {
-  return sample_at<Order>(nearest_of(s, p), p, kernel);
+  return sample_at<Order>(nearest_of(s, p), kernel);
 }
 
 template SkeletonSample distance_field<Derivatives::ScaleInvariant>(const SegmentSkeleton&, const Vec3d&,

@@ -6,7 +6,7 @@
 namespace marrow {
 
 struct NearestPlace {
-  Vec3d at;
+  Vec3d to_point;  ///< p less the place, which loses nothing however far both are from the origin
   double radius;
   bool moves;  ///< with p; false at ends and corners
 };

@@ -29,14 +29,14 @@ struct Sum : SkeletonSample {
   }
 };
 
-// Differences of the first derivatives with steps h and 2h, combined to fourth order.
+// Differences of the first derivatives at the origin with steps h and 2h, combined to fourth order.
 template <class Plain>
-SecondOrderSample by_steps(const Plain& plain, const Vec3d& p, double h) {
+SecondOrderSample by_steps(const Plain& plain, double h) {
   SecondOrderSample s;
   const auto first = [](const SkeletonSample& x) {
     return std::array{x.gradient, x.si_jacobian.rows[0], x.si_jacobian.rows[1], x.si_jacobian.rows[2]};
   };
-  const SkeletonSample here = plain(p);
+  const SkeletonSample here = plain(Vec3d{});
   const std::array<HessianJet*, 4> jets{&s.field, &s.si.x, &s.si.y, &s.si.z};
   const auto slopes = first(here);
   for (std::size_t q = 0; q < 4; ++q) {
@@ -45,7 +45,7 @@ SecondOrderSample by_steps(const Plain& plain, const Vec3d& p, double h) {
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto at = [&](double step) {
-      Vec3d moved = p;
+      Vec3d moved{};
       moved[axis] += step;
       return first(plain(moved));
     };
@@ -72,15 +72,16 @@ double difference(const SecondOrderSample& a, const SecondOrderSample& b) {
 }
 
 // By the two neighbouring steps that agree best. Only for arcs and triangles under the compact kernel, whose edge cuts
-// them anywhere: what the edge adds to the derivatives is not under the integral.
+// them anywhere: what the edge adds to the derivatives is not under the integral. They are seen from the point, so that
+// small steps are exact wherever it is.
 template <class Plain>
-SecondOrderSample by_differences(const Plain& plain, const Vec3d& p, double radius) {
+SecondOrderSample by_differences(const Plain& plain, double radius) {
   constexpr double enough = 1e-9;
   double h = longest_step * radius, least = std::numeric_limits<double>::infinity();
-  SecondOrderSample best, longer = by_steps(plain, p, h);
+  SecondOrderSample best, longer = by_steps(plain, h);
   while (h > shortest_step * radius) {
     h /= 8;
-    const SecondOrderSample shorter = by_steps(plain, p, h);
+    const SecondOrderSample shorter = by_steps(plain, h);
     const double off = difference(longer, shorter);
     if (off < least) {
       least = off;
@@ -136,8 +137,9 @@ HessianJet second_order_share(const SegmentSkeleton& segment, const Vec3d& p, co
 SecondOrderSample second_order(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
   if (kernel.family == KernelFamily::Compact) {
     const double radius = std::min({triangle.radii[0], triangle.radii[1], triangle.radii[2]});
-    return by_differences([&](const Vec3d& q) { return triangle_field<Derivatives::Second>(triangle, q, kernel); }, p,
-                          radius);
+    TriangleSkeleton seen = triangle;
+    for (Vec3d& v : seen.vertices) v = v - p;
+    return by_differences([&](const Vec3d& q) { return triangle_field<Derivatives::Second>(seen, q, kernel); }, radius);
   }
   bool foot_is_inside = false;
   const TriangleView v = best_view(triangle, p, foot_is_inside);
@@ -150,9 +152,12 @@ SecondOrderSample second_order(const TriangleSkeleton& triangle, const Vec3d& p,
 }
 
 SecondOrderSample second_order(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
-  if (kernel.family == KernelFamily::Compact)
-    return by_differences([&](const Vec3d& q) { return arc_field<Derivatives::Second>(arc, q, kernel); }, p,
+  if (kernel.family == KernelFamily::Compact) {
+    ArcSkeleton seen = arc;
+    seen.center = arc.center - p;
+    return by_differences([&](const Vec3d& q) { return arc_field<Derivatives::Second>(seen, q, kernel); },
                           std::min(arc.radius_from, arc.radius_to));
+  }
   if (kernel.family == KernelFamily::Inverse &&
       arc_field<Derivatives::ScaleInvariant>(arc, p, kernel.degree).value > field_ceiling)
     return SecondOrderSample::on_skeleton();

@@ -16,19 +16,17 @@ namespace {
 
 using X = HessianJet;
 
+// v leads from the place to p.
 struct Place {
-  Vec3<X> at;
+  Vec3<X> v;
   X radius;
 
-  X scaled_squared(const Vec3<X>& p) const {
-    const Vec3<X> v = p - at;
-    return (square(v.x) + square(v.y) + square(v.z)) / square(radius);
-  }
+  X scaled_squared() const { return (square(v.x) + square(v.y) + square(v.z)) / square(radius); }
 };
 
 // f = k(y), grad_S f = 2 k'(y) v / tau.
-SecondOrderSample sample_at(const Place& q, const Vec3<X>& p, const Kernel& kernel) {
-  const X y = q.scaled_squared(p);
+SecondOrderSample sample_at(const Place& q, const Kernel& kernel) {
+  const X y = q.scaled_squared();
   if (kernel.family == KernelFamily::Inverse && !(y.value > 0)) return SecondOrderSample::on_skeleton();
   const Profile profile(kernel, 0);
   const auto [value, slope, curvature] = profile.at(y.value);
@@ -37,21 +35,21 @@ SecondOrderSample sample_at(const Place& q, const Vec3<X>& p, const Kernel& kern
   s.field = X::chain(y, value * scale, slope * scale, curvature * scale);
   if (!(s.field.value <= field_ceiling)) return SecondOrderSample::on_skeleton();
   const X fall = X::chain(y, slope * scale, curvature * scale, profile.third(y.value) * scale) * 2.0 / q.radius;
-  const Vec3<X> v = p - q.at;
-  s.si = {fall * v.x, fall * v.y, fall * v.z};
+  s.si = {fall * q.v.x, fall * q.v.y, fall * q.v.z};
   return s;
 }
 
-Place fixed(const NearestPlace& q) { return {constant<X>(q.at), X(q.radius)}; }
+Place fixed(const NearestPlace& q) { return {variables_at(q.to_point), X(q.radius)}; }
 
 // Where foot + slope height^2 / (radius at the foot) lies.   [field-maths 3.2]
 Place moving_on(const SegmentSkeleton& s, const Vec3<X>& p) {
   const double length = marrow::length(s.to - s.from), slope = (s.radius_to - s.radius_from) / length;
   const Vec3d u = (s.to - s.from) / length;
-  const X foot = dot(p - s.from, u);
-  const Vec3<X> across = p - s.from - constant<X>(u) * foot;
-  const X t = foot + slope * (square(across.x) + square(across.y) + square(across.z)) / (s.radius_from + slope * foot);
-  return {constant<X>(s.from) + constant<X>(u) * t, s.radius_from + slope * t};
+  const Vec3<X> from_start = p - s.from;
+  const X foot = dot(from_start, u), foot_radius = s.radius_from + slope * foot;
+  const Vec3<X> across = from_start - constant<X>(u) * foot;
+  const X ahead = slope * (square(across.x) + square(across.y) + square(across.z)) / foot_radius;
+  return {across - constant<X>(u) * ahead, foot_radius + slope * ahead};
 }
 
 Place place_on(const SegmentSkeleton& s, const Vec3d& p) {
@@ -67,23 +65,22 @@ std::optional<Place> place_in_plane(const TriangleSkeleton& s, const Vec3<X>& p)
   const Vec3d rise = dual1 * (s.radii[1] - s.radii[0]) + dual2 * (s.radii[2] - s.radii[0]);
   const Vec3<X> from = p - s.vertices[0];
   const X over = dot(from, normal);
-  const Vec3<X> foot = from - constant<X>(normal / area2) * over;
+  const Vec3<X> above = constant<X>(normal / area2) * over, foot = from - above;
   const X foot_radius = s.radii[0] + dot(foot, rise);
   if (!(foot_radius.value > 0)) return {};
-  const Vec3<X> q = foot + constant<X>(rise) * (square(over) * (1 / area2) / foot_radius);
+  const Vec3<X> beside = constant<X>(rise) * (square(over) * (1 / area2) / foot_radius), q = foot + beside;
   const double first = dot(q, dual1).value, second = dot(q, dual2).value;
   if (!(first >= 0 && second >= 0 && first + second <= 1)) return {};
-  return Place{constant<X>(s.vertices[0]) + q, s.radii[0] + dot(q, rise)};
+  return Place{above - beside, s.radii[0] + dot(q, rise)};
 }
 
 Place place_on(const TriangleSkeleton& s, const Vec3d& p) {
-  const Vec3<X> variables = variables_at(p);
-  if (const auto inside = place_in_plane(s, variables)) return *inside;
+  if (const auto inside = place_in_plane(s, variables_at(p))) return *inside;
   std::optional<Place> best;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
     const Place on_edge = place_on(SegmentSkeleton{s.vertices[i], s.vertices[j], s.radii[i], s.radii[j]}, p);
-    if (!best || on_edge.scaled_squared(variables).value < best->scaled_squared(variables).value) best = on_edge;
+    if (!best || on_edge.scaled_squared().value < best->scaled_squared().value) best = on_edge;
   }
   return *best;
 }
@@ -92,25 +89,23 @@ Place place_on(const TriangleSkeleton& s, const Vec3d& p) {
 Place place_on(const ArcSkeleton& s, const Vec3d& p) {
   const NearestPlace nearest = nearest_place(s, p);
   if (!nearest.moves) return fixed(nearest);
-  const Vec3<X> variables = variables_at(p);
-  const Vec3d from_center = nearest.at - s.center;
+  const Vec3<X> seen = variables_at(p - s.center);
+  const Vec3d from_center = p - s.center - nearest.to_point;
   const double turn = 2 * std::numbers::pi, slope = (s.radius_to - s.radius_from) / (s.end - s.begin);
   double root = atan2(dot(from_center, s.axis2), dot(from_center, s.axis1));
   if (slope != 0) root += turn * std::floor(((nearest.radius - s.radius_from) / slope + s.begin - root) / turn + 0.5);
   const auto place_at = [&](const X& angle) {
-    const Vec3<X> at = constant<X>(s.center) + constant<X>(s.axis1 * s.major) * cos(angle) +
-                       constant<X>(s.axis2 * s.major) * sin(angle);
-    return Place{at, s.radius_from + slope * (angle - s.begin)};
+    const Vec3<X> at = constant<X>(s.axis1 * s.major) * cos(angle) + constant<X>(s.axis2 * s.major) * sin(angle);
+    return Place{seen - at, s.radius_from + slope * (angle - s.begin)};
   };
   const auto stationary = [&](const X& angle) {
     const Place q = place_at(angle);
-    const Vec3<X> v = variables - q.at;
     const Vec3<X> along = constant<X>(s.axis2 * s.major) * cos(angle) - constant<X>(s.axis1 * s.major) * sin(angle);
-    return dot(v, along) * q.radius + dot(v, v) * slope;
+    return dot(q.v, along) * q.radius + dot(q.v, q.v) * slope;
   };
   // its slope by the angle
   const auto [sine, cosine] = sincos(root);
-  const Vec3d along = (s.axis2 * cosine - s.axis1 * sine) * s.major, v = p - nearest.at;
+  const Vec3d along = (s.axis2 * cosine - s.axis1 * sine) * s.major, v = nearest.to_point;
   const double radius = s.radius_from + slope * (root - s.begin);
   const double bend = (dot(v, from_center) * -1 - length_squared(along)) * radius - dot(v, along) * slope;
   return place_at(implicit_root(root, bend, stationary));
@@ -119,13 +114,13 @@ Place place_on(const ArcSkeleton& s, const Vec3d& p) {
 }  // namespace
 
 SecondOrderSample second_order_by_distance(const SegmentSkeleton& s, const Vec3d& p, const Kernel& kernel) {
-  return s.from == s.to ? SecondOrderSample{} : sample_at(place_on(s, p), variables_at(p), kernel);
+  return s.from == s.to ? SecondOrderSample{} : sample_at(place_on(s, p), kernel);
 }
 SecondOrderSample second_order_by_distance(const TriangleSkeleton& s, const Vec3d& p, const Kernel& kernel) {
-  return sample_at(place_on(s, p), variables_at(p), kernel);
+  return sample_at(place_on(s, p), kernel);
 }
 SecondOrderSample second_order_by_distance(const ArcSkeleton& s, const Vec3d& p, const Kernel& kernel) {
-  return sample_at(place_on(s, p), variables_at(p), kernel);
+  return sample_at(place_on(s, p), kernel);
 }
 
 }  // namespace marrow
