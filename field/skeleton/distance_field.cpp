@@ -8,19 +8,16 @@
 
 #include "field/kernel/profile.h"
 #include "field/skeleton/arc_view.h"
+#include "field/skeleton/corners.h"
 #include "field/skeleton/nearest_place.h"
 #include "field/skeleton/skeletons.h"
 
 namespace marrow {
 namespace {
 
-// The place q of a skeleton with the smallest scaled distance, as p - q (which loses nothing however far both are from
-// the origin), and how it and its radius move with p: 0 at ends and corners, where it stays.
-struct Nearest {
-  Vec3d to_point;
-  double radius;
-  Matrix3 moves{};
-  Vec3d radius_gradient{};
+// The place q, with how its radius and its place along a curve move with p.
+struct Nearest : NearestPlace {
+  Vec3d radius_gradient{}, along_gradient{};
 
   double scaled_squared() const { return length_squared(to_point) / (radius * radius); }
 };
@@ -57,6 +54,7 @@ void let_move(Nearest& q, const Vec3d& first, const Vec3d& second, double radius
   const Vec3d t_gradient = (first / d2 - v * (2 * along / d2)) / bend;
   q.moves = Matrix3::outer(first, t_gradient);
   q.radius_gradient = t_gradient * radius_slope;
+  q.along_gradient = t_gradient;
 }
 
 Nearest nearer(const Nearest& a, const Nearest& b) { return b.scaled_squared() < a.scaled_squared() ? b : a; }
@@ -72,12 +70,15 @@ Nearest nearest_of(const SegmentSkeleton& s, const Vec3d& p) {
     const Vec3d across = from_start - u * foot;
     const double ahead = slope * length_squared(across) / foot_radius, t = foot + ahead;
     if (t > 0 && t < length) {
-      Nearest inside{across - u * ahead, s.radius_from + slope * t};
+      Nearest inside{{across - u * ahead, s.radius_from + slope * t}};
       let_move(inside, u, {}, slope);
+      inside.shares[0] = {t / length, inside.along_gradient / length};
       return inside;
     }
   }
-  return nearer({from_start, s.radius_from}, {p - s.to, s.radius_to});
+  Nearest start{{from_start, s.radius_from}}, end{{p - s.to, s.radius_to}};
+  end.shares[0].value = 1;
+  return nearer(start, end);
 }
 
 // In the plane likewise, with the gradient of the radius in place of the slope. `inside` when it is in the triangle.
@@ -86,33 +87,36 @@ struct PlaneNearest {
   bool inside;
 };
 PlaneNearest nearest_in_plane(const TriangleSkeleton& s, const Vec3d& p) {
-  const Vec3d a = s.vertices[1] - s.vertices[0], b = s.vertices[2] - s.vertices[0], normal = cross(a, b);
-  const double area2 = length_squared(normal);
-  // dual vectors: barycentric coordinates are dot(x - vertex 0, dual)
-  const Vec3d dual1 = cross(b, normal) / area2, dual2 = cross(normal, a) / area2;
-  const Vec3d rise = dual1 * (s.radii[1] - s.radii[0]) + dual2 * (s.radii[2] - s.radii[0]);
-  const Vec3d n = normal / std::sqrt(area2), from_corner = p - s.vertices[0];
+  const Corners corners(s);
+  const auto& dual = corners.dual;
+  const Vec3d rise = dual[0] * (s.radii[1] - s.radii[0]) + dual[1] * (s.radii[2] - s.radii[0]);
+  const Vec3d n = corners.normal / std::sqrt(corners.area2), from_corner = p - s.vertices[0];
   const double height = dot(from_corner, n);
   const Vec3d over = n * height, foot = from_corner - over;
   const double foot_radius = s.radii[0] + dot(foot, rise);
   if (!(foot_radius > 0)) return {{}, false};
   const Vec3d beside = rise * (height * height / foot_radius), q = foot + beside;
-  const double first = dot(q, dual1), second = dot(q, dual2);
+  const double first = dot(q, dual[0]), second = dot(q, dual[1]);
   if (!(first >= 0 && second >= 0 && first + second <= 1)) return {{}, false};
-  Nearest at{over - beside, s.radii[0] + dot(q, rise)};
+  Nearest at{{over - beside, s.radii[0] + dot(q, rise)}};
   // q = foot + rise height^2 / tau_f, by the chain rule
   const Vec3d step = n * (2 * height / foot_radius) - rise * (height * height / (foot_radius * foot_radius));
   at.moves = Matrix3::scaled_identity(1) + Matrix3::outer(n, n) * -1.0 + Matrix3::outer(rise, step);
   at.radius_gradient = at.moves.transposed_times(rise);
+  at.shares = {ShareSample{first, at.moves.transposed_times(dual[0])},
+               ShareSample{second, at.moves.transposed_times(dual[1])}};
   return {at, true};
 }
 
 Nearest nearest_of(const TriangleSkeleton& s, const Vec3d& p) {
   if (const auto [at, inside] = nearest_in_plane(s, p); inside) return at;
-  Nearest best{p - s.vertices[0], s.radii[0]};
+  Nearest best{{p - s.vertices[0], s.radii[0]}};
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
-    best = nearer(best, nearest_of(SegmentSkeleton{s.vertices[i], s.vertices[j], s.radii[i], s.radii[j]}, p));
+    Nearest edge = nearest_of(SegmentSkeleton{s.vertices[i], s.vertices[j], s.radii[i], s.radii[j]}, p);
+    const ShareSample share = edge.shares[0];
+    edge.shares = on_edge<ShareSample>(i, j, {1 - share.value, share.gradient * -1.0}, share);
+    best = nearer(best, edge);
   }
   return best;
 }
@@ -133,7 +137,9 @@ struct ArcCurve {
   }
   Nearest at(double angle) const {
     const auto half = sincos(angle / 2);
-    return {view.from_arc(half), radius(angle)};
+    Nearest q{{view.from_arc(half), radius(angle)}};
+    q.shares[0].value = (angle - view.begin) / (view.end - view.begin);
+    return q;
   }
   Nearest moving_at(double angle) const {
     Nearest q = at(angle);
@@ -141,6 +147,7 @@ struct ArcCurve {
     const Vec3d first = (view.tangential * cosine - view.radial * sine) * view.major;
     const Vec3d second = (view.radial * cosine + view.tangential * sine) * -view.major;
     let_move(q, first, second, radius_slope);
+    q.shares[0].gradient = q.along_gradient / (view.end - view.begin);
     return q;
   }
 };
@@ -173,12 +180,11 @@ Nearest nearest_of(const ArcSkeleton& s, const Vec3d& p) {
   return best;
 }
 
-NearestPlace place_of(const Nearest& q) { return {q.to_point, q.radius, !(q.moves == Matrix3{})}; }
-
 }  // namespace
 
-NearestPlace nearest_place(const SegmentSkeleton& s, const Vec3d& p) { return place_of(nearest_of(s, p)); }
-NearestPlace nearest_place(const ArcSkeleton& s, const Vec3d& p) { return place_of(nearest_of(s, p)); }
+NearestPlace nearest_place(const SegmentSkeleton& s, const Vec3d& p) { return nearest_of(s, p); }
+NearestPlace nearest_place(const TriangleSkeleton& s, const Vec3d& p) { return nearest_of(s, p); }
+NearestPlace nearest_place(const ArcSkeleton& s, const Vec3d& p) { return nearest_of(s, p); }
 
 template <Derivatives Order>
 SkeletonSample distance_field(const SegmentSkeleton& s, const Vec3d& p, const Kernel& kernel) {

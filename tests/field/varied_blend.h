@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <vector>
 
 #include "field/blend/blend_field.h"
 #include "field/blend/local_contact.h"
@@ -33,8 +34,12 @@ inline void give_angles(BlendField& blend, Random& random, int rule) {
       for (std::size_t i = 0; i < list.size(); ++i) list.alphas.push_back(random.between(0.1, 1.4));
     };
     fill(blend.points), fill(blend.segments), fill(blend.arcs), fill(blend.triangles), fill(blend.distance_segments);
-    for (std::size_t i = 0; i < blend.segments.size(); ++i)
-      blend.segments.alphas_to.push_back(random.between(0.1, 1.4));
+    const auto rise = [&](const auto& list, std::vector<double>& angles) {
+      for (std::size_t i = 0; i < list.size(); ++i) angles.push_back(random.between(0.1, 1.4));
+    };
+    rise(blend.segments, blend.segments.alphas_to), rise(blend.distance_segments, blend.distance_segments.alphas_to);
+    rise(blend.arcs, blend.arcs.alphas_to), rise(blend.triangles, blend.triangles.alphas_to);
+    rise(blend.triangles, blend.triangles.alphas_third);
   } else if (rule == 2) {
     std::uint32_t strand = 0;
     const auto fill = [&](auto& list) {
