@@ -15,7 +15,7 @@ namespace {
 Interval skeleton_angles(const BlendField& blend) {
   Interval all(blend.alpha);
   blend.for_each_list([&](const auto& list) {
-    for (const auto* angles : {&list.alphas, &list.alphas_to})
+    for (const auto* angles : {&list.alphas, &list.alphas_to, &list.alphas_third})
       for (const double a : *angles) all = hull(all, a);
   });
   return all;
@@ -58,6 +58,17 @@ Interval around(double middle, double slope, double rho, const Interval& range) 
 bool may_jump(const BlendField& blend) {
   const auto& strands = blend.distance_segments.strands;
   return std::adjacent_find(strands.begin(), strands.end()) != strands.end();
+}
+
+// Where the angle of a skeleton is taken at one place of it, that place may move fast.
+bool may_turn_fast(const BlendField& blend) {
+  const auto varies = [](const auto& list) {
+    for (std::size_t i = 0; i < list.alphas.size(); ++i)
+      if (list.angle_varies(i)) return true;
+    return false;
+  };
+  return varies(blend.distance_segments) || varies(blend.cani_hornus_segments) || varies(blend.distance_triangles) ||
+         varies(blend.distance_arcs);
 }
 
 Vec3<Interval> up_to(double length) { return {{-length, length}, {-length, length}, {-length, length}}; }
@@ -124,7 +135,7 @@ Vec3<Interval> slopes_of_mean(const Vec3d& middle, double range, double first, d
 AngleBounds per_skeleton_angles(const BlendField& blend, const SumBounds& sum) {
   const Interval range = skeleton_angles(blend);
   const double steep = sum.log_slope();
-  if (may_jump(blend) || !(steep < Box3::inf)) return {range, any_slope};
+  if (may_jump(blend) || may_turn_fast(blend) || !(steep < Box3::inf)) return {range, any_slope};
   const AlphaSample middle = alpha_at(blend, sum.center());
   // |D^2 f_i| <= m (m + 1) / d^2 f_i, and m >= 2
   return {around(middle.value, steep, sum.rho(), range),

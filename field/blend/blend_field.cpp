@@ -81,7 +81,8 @@ bool are_equal(const auto& values) {
 std::optional<double> common_angle(const BlendField& blend) {
   std::vector<double> all;
   blend.for_each_list([&](const auto& list) {
-    for (const auto* angles : {&list.alphas, &list.alphas_to}) all.insert(all.end(), angles->begin(), angles->end());
+    for (const auto* angles : {&list.alphas, &list.alphas_to, &list.alphas_third})
+      all.insert(all.end(), angles->begin(), angles->end());
   });
   return !all.empty() && are_equal(all) ? std::optional(all.front()) : std::nullopt;
 }
@@ -112,7 +113,7 @@ std::string untraceable_angles(const BlendField& blend) {
   bool negative = false, linear = false;
   blend.for_each_list([&](const auto& list) {
     for (const double alpha : list.alphas) negative = negative || alpha < 0;
-    linear = linear || (!list.alphas_to.empty() && list.alphas_to != list.alphas);
+    for (std::size_t i = 0; i < list.alphas.size(); ++i) linear = linear || list.angle_varies(i);
   });
   if (negative) return unknown("an `alpha` below 0 among several");
   return linear ? unknown("an `alpha` that varies along a skeleton") : std::string{};

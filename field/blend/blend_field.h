@@ -23,18 +23,22 @@ class LocalContact;
 
 /// Primitives of one kind and the material and angle of each. Invariant: materials is empty (all are the object's) or
 /// parallel to skeletons; alphas is parallel to skeletons in a blend with `alpha_per_skeleton`, else empty; alphas_to
-/// (integral segments only) is empty or parallel to skeletons, and then an angle is linear from the one to the other;
-/// strands is empty (each by itself) or parallel to skeletons, ascending: what has one number came from one polyline,
-/// curve, ...
+/// is empty or parallel to skeletons, and then an angle is linear from the one at the begin to this one at the end; of
+/// a triangle alphas_to is that of the second corner and alphas_third (else empty) that of the third; strands is empty
+/// (each by itself) or parallel to skeletons, ascending: what has one number came from one polyline, curve, ...
 template <class Skeleton>
 struct PrimitiveList {
   std::vector<Skeleton> skeletons;
   std::vector<MaterialId> materials;
-  std::vector<double> alphas, alphas_to;
+  std::vector<double> alphas, alphas_to, alphas_third;
   std::vector<std::uint32_t> strands;
 
   std::size_t size() const { return skeletons.size(); }
   bool empty() const { return skeletons.empty(); }
+  /// Whether the angle of a skeleton is not the same all over it.
+  bool angle_varies(std::size_t i) const {
+    return (!alphas_to.empty() && alphas_to[i] != alphas[i]) || (!alphas_third.empty() && alphas_third[i] != alphas[i]);
+  }
   MaterialId material(std::size_t i) const { return materials.empty() ? MaterialId{} : materials[i]; }
   void add(const Skeleton& skeleton, MaterialId material_id) {
     if (material_id.valid() && materials.empty()) materials.resize(skeletons.size());
@@ -112,7 +116,8 @@ SkeletonSample sum_of_primitives(const BlendField&, const Vec3d& p);
 Correction correction_of(const BlendField&);
 
 /// The angle used at p: constant, or
-///   per skeleton  sum f_i alpha_i / sum f_i   [Zanni et al. 2015, eq. 14], linear angles weighted along the segment,
+///   per skeleton  sum f_i alpha_i / sum f_i   [Zanni et al. 2015, eq. 14], linear angles weighted along the skeleton,
+///                 or under the distance model taken where it is nearest,
 ///   by strand     directional_alpha.h,
 ///   local contact local_contact.h,   or from a source.
 /// Where the sum is 0 or infinite: the alpha of the blend, without gradient.

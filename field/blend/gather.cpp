@@ -2,6 +2,7 @@
 #include "field/blend/gather.h"
 
 #include <cmath>
+#include <concepts>
 #include <vector>
 
 #include "field/blend/primitive_visit.h"
@@ -15,6 +16,16 @@ bool is_usable(const SkeletonSample& sum) { return sum.value > 0 && sum.value <=
 
 Kernel kernel_of(const BlendField& blend) { return {blend.kernel, blend.degree, blend.kernel_shape}; }
 
+template <class Skeleton>
+Shares shares_of(const BlendField& blend, const SkeletonSample& s, const PrimitiveList<Skeleton>& list, std::size_t i,
+                 const Vec3d& p) {
+  if constexpr (std::same_as<Skeleton, SegmentSkeleton>)
+    if (&list == &blend.cani_hornus_segments) return foot_shares(list.skeletons[i], p, s);
+  if constexpr (!std::same_as<Skeleton, PointSkeleton>)
+    if (is_by_distance(blend, list)) return nearest_shares(list.skeletons[i], p, s);
+  return integral_shares(list.skeletons[i], p, kernel_of(blend));
+}
+
 // f_i alpha_i of a primitive, with linear angles weighted along it.
 struct Angles {
   double value = 0;
@@ -22,13 +33,14 @@ struct Angles {
   void add(const BlendField& blend, const SkeletonSample& s, const auto& list, std::size_t i, const Vec3d& p) {
     value += s.value * list.alphas[i];
     gradient += s.gradient * list.alphas[i];
-    if (list.alphas_to.empty() || list.alphas_to[i] == list.alphas[i] || !is_usable(s)) return;
-    if constexpr (requires { segment_share(list.skeletons[i], p, kernel_of(blend)); }) {
-      const ShareSample share = segment_share(list.skeletons[i], p, kernel_of(blend));
-      const double rise = list.alphas_to[i] - list.alphas[i];
-      value += share.value * rise;
-      gradient += share.gradient * rise;
-    }
+    if (!is_usable(s) || !list.angle_varies(i)) return;
+    const Shares shares = shares_of(blend, s, list, i, p);
+    add(shares[0], list.alphas_to[i] - list.alphas[i]);
+    if (!list.alphas_third.empty()) add(shares[1], list.alphas_third[i] - list.alphas[i]);
+  }
+  void add(const ShareSample& share, double rise) {
+    value += share.value * rise;
+    gradient += share.gradient * rise;
   }
 };
 
@@ -47,25 +59,20 @@ Gathered per_skeleton(const BlendField& blend, const Vec3d& p) {
   return all;
 }
 
-// A direction at a point and how it turns. Segments have one; points and triangles have none.
-struct Direction {
-  Vec3d u;
-  Matrix3 jacobian;
-};
-Direction direction_of(const PointSkeleton&, const Vec3d&) { return {}; }
-Direction direction_of(const TriangleSkeleton&, const Vec3d&) { return {}; }
-Direction direction_of(const SegmentSkeleton& s, const Vec3d&) { return {normalize(s.to - s.from).vec(), {}}; }
-// Of the circle where p is nearest to it: axis x v / |axis x v|.
-Direction direction_of(const ArcSkeleton& s, const Vec3d& p) {
-  const Vec3d axis = cross(s.axis1, s.axis2), around = cross(axis, p - s.center);
-  const double radius = length(around);
-  if (!(radius > 0)) return {};
-  const Vec3d u = around / radius;
-  // rows of [axis x], less their part along u
-  Matrix3 turn{{Vec3d{0, -axis.z, axis.y}, Vec3d{axis.z, 0, -axis.x}, Vec3d{-axis.y, axis.x, 0}}};
-  const Vec3d along = turn.transposed_times(u);
-  for (std::size_t k = 0; k < 3; ++k) turn.rows[k] = (turn.rows[k] - along * u[k]) / radius;
-  return {u, turn};
+// The sum of a skeleton's directions, weighted by its field. Points and triangles have none.
+template <class Skeleton>
+DirectionSample direction_of(const BlendField& blend, const SkeletonSample& s, const PrimitiveList<Skeleton>& list,
+                             std::size_t i, const Vec3d& p) {
+  if constexpr (std::same_as<Skeleton, SegmentSkeleton>) {
+    const Vec3d u = normalize(list.skeletons[i].to - list.skeletons[i].from).vec();
+    return {u * s.value, Matrix3::outer(u, s.gradient)};
+  } else if constexpr (std::same_as<Skeleton, ArcSkeleton>) {
+    if (!is_usable(s)) return {};
+    return is_by_distance(blend, list) ? nearest_direction(list.skeletons[i], p, s)
+                                       : arc_direction(list.skeletons[i], p, kernel_of(blend));
+  } else {
+    return {};
+  }
 }
 
 template <Derivatives Order>
@@ -76,12 +83,11 @@ Gathered by_direction(const BlendField& blend, const Vec3d& p) {
   for_each_primitive<Order>(blend, p, [&](const SkeletonSample& s, const auto& list, std::size_t i) {
     all.sum += s;
     Strand& strand = strands[list.strands[i]];
-    const auto [u, jacobian] = direction_of(list.skeletons[i], p);
+    const DirectionSample direction = direction_of(blend, s, list, i, p);
     strand.field += s.value;
     strand.field_gradient += s.gradient;
-    strand.direction += u * s.value;
-    if constexpr (Order >= Derivatives::First)
-      strand.direction_jacobian += Matrix3::outer(u, s.gradient) + jacobian * s.value;
+    strand.direction += direction.value;
+    if constexpr (Order >= Derivatives::First) strand.direction_jacobian += direction.jacobian;
   });
   if (is_usable(all.sum)) all.alpha = directional_alpha(strands, Order >= Derivatives::First);
   return all;

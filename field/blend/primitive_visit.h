@@ -27,6 +27,13 @@ void visit_strands(const List& list, const Field& field, const Visit& visit) {
   }
 }
 
+/// Whether a list of this blend has the distance model.
+template <class List>
+bool is_by_distance(const BlendField& blend, const List& list) {
+  const void* const at = &list;
+  return at == &blend.distance_segments || at == &blend.distance_triangles || at == &blend.distance_arcs;
+}
+
 /// Calls visit(sample, list, i) for each primitive.
 template <Derivatives Order, class Visit>
 void for_each_primitive(const BlendField& blend, const Vec3d& p, const Visit& visit) {

@@ -2,6 +2,7 @@
 #include "field/blend/second_order_gather.h"
 
 #include <cmath>
+#include <concepts>
 #include <vector>
 
 #include "field/blend/local_contact.h"
@@ -39,6 +40,17 @@ void for_each_second_order(const BlendField& blend, const Vec3d& p, const Visit&
   all(blend.distance_arcs, by_distance);
 }
 
+template <class Skeleton>
+SecondOrderShares shares_of(const BlendField& blend, const X& field, const PrimitiveList<Skeleton>& list, std::size_t i,
+                            const Vec3d& p) {
+  const auto weighted = [&](const SecondOrderShares& at) { return SecondOrderShares{field * at[0], field * at[1]}; };
+  if constexpr (std::same_as<Skeleton, SegmentSkeleton>)
+    if (&list == &blend.cani_hornus_segments) return weighted(second_order_foot_shares(list.skeletons[i], p));
+  if constexpr (!std::same_as<Skeleton, PointSkeleton>)
+    if (is_by_distance(blend, list)) return weighted(second_order_nearest_shares(list.skeletons[i], p));
+  return second_order_shares(list.skeletons[i], p, kernel_of(blend));
+}
+
 // sum f_i alpha_i / sum f_i
 SecondOrderGathered per_skeleton(const BlendField& blend, const Vec3d& p) {
   SecondOrderGathered all;
@@ -46,21 +58,28 @@ SecondOrderGathered per_skeleton(const BlendField& blend, const Vec3d& p) {
   for_each_second_order(blend, p, [&](const SecondOrderSample& s, const auto& list, std::size_t i) {
     all.sum += s;
     angles += s.field * list.alphas[i];
-    if (list.alphas_to.empty() || list.alphas_to[i] == list.alphas[i] || !is_usable(s.field)) return;
-    if constexpr (requires { second_order_share(list.skeletons[i], p, kernel_of(blend)); })
-      angles += second_order_share(list.skeletons[i], p, kernel_of(blend)) * (list.alphas_to[i] - list.alphas[i]);
+    if (!is_usable(s.field) || !list.angle_varies(i)) return;
+    const SecondOrderShares shares = shares_of(blend, s.field, list, i, p);
+    angles += shares[0] * (list.alphas_to[i] - list.alphas[i]);
+    if (!list.alphas_third.empty()) angles += shares[1] * (list.alphas_third[i] - list.alphas[i]);
   });
   if (is_usable(all.sum.field)) all.alpha = angles / all.sum.field;
   return all;
 }
 
-Vec3<X> direction_of(const PointSkeleton&, const Vec3d&) { return {}; }
-Vec3<X> direction_of(const TriangleSkeleton&, const Vec3d&) { return {}; }
-Vec3<X> direction_of(const SegmentSkeleton& s, const Vec3d&) { return constant<X>(normalize(s.to - s.from).vec()); }
-Vec3<X> direction_of(const ArcSkeleton& s, const Vec3d& p) {
-  const Vec3<X> around = cross(constant<X>(cross(s.axis1, s.axis2)), variables_at(p) - s.center);
-  const X radius = length(around);
-  return radius.value > 0 ? around / radius : Vec3<X>{};
+// Weighted by the field.
+template <class Skeleton>
+Vec3<X> direction_of(const BlendField& blend, const X& field, const PrimitiveList<Skeleton>& list, std::size_t i,
+                     const Vec3d& p) {
+  if constexpr (std::same_as<Skeleton, SegmentSkeleton>) {
+    return constant<X>(normalize(list.skeletons[i].to - list.skeletons[i].from).vec()) * field;
+  } else if constexpr (std::same_as<Skeleton, ArcSkeleton>) {
+    if (!is_usable(field)) return {};
+    return is_by_distance(blend, list) ? second_order_nearest_direction(list.skeletons[i], p) * field
+                                       : second_order_direction(list.skeletons[i], p, kernel_of(blend));
+  } else {
+    return {};
+  }
 }
 
 SecondOrderGathered by_direction(const BlendField& blend, const Vec3d& p) {
@@ -71,7 +90,7 @@ SecondOrderGathered by_direction(const BlendField& blend, const Vec3d& p) {
     all.sum += s;
     SecondOrderStrand& strand = strands[list.strands[i]];
     strand.field += s.field;
-    strand.direction += direction_of(list.skeletons[i], p) * s.field;
+    strand.direction += direction_of(blend, s.field, list, i, p);
   });
   if (is_usable(all.sum.field)) all.alpha = directional_alpha(strands);
   return all;

@@ -65,7 +65,10 @@ class Flattener {
     TriangleSkeleton mapped = s;
     for (Vec3d& vertex : mapped.vertices) vertex = map_.point(vertex);
     for (double& radius : mapped.radii) radius *= scale_;
-    add(model_ == SkeletonModel::Distance ? field_.distance_triangles : field_.triangles, mapped, angles_.mean());
+    auto& list = model_ == SkeletonModel::Distance ? field_.distance_triangles : field_.triangles;
+    add(list, mapped, angles_.of(0));
+    add_angle(list.alphas_to, 1);
+    add_angle(list.alphas_third, 2);
   }
 
   void operator()(const ArcSkeleton& s) {
@@ -76,7 +79,9 @@ class Flattener {
     mapped.major *= scale_;
     mapped.radius_from *= scale_;
     mapped.radius_to *= scale_;
-    add(model_ == SkeletonModel::Distance ? field_.distance_arcs : field_.arcs, mapped, angles_.mean());
+    auto& list = model_ == SkeletonModel::Distance ? field_.distance_arcs : field_.arcs;
+    add(list, mapped, angles_.of(0));
+    add_angle(list.alphas_to, 1);
   }
 
   SkeletonModel model() const { return model_; }
@@ -89,6 +94,9 @@ class Flattener {
     if (field_.alpha_per_skeleton) list.alphas.push_back(alpha);
     if (!field_.direction_bounds.empty()) list.strands.push_back(strand_);
   }
+  void add_angle(std::vector<double>& angles, std::size_t node) {
+    if (field_.alpha_per_skeleton) angles.push_back(angles_.of(node));
+  }
   void add_point(const PointSkeleton& s, std::size_t node) {
     add(field_.points, PointSkeleton{map_.point(s.at), s.radius * scale_}, angles_.of(node));
   }
@@ -100,14 +108,9 @@ class Flattener {
                    std::size_t second) {
     const SegmentSkeleton mapped{map_.point(from), map_.point(to), radius_from * scale_, radius_to * scale_};
     if (!(length(mapped.to - mapped.from) > 0)) return void(++without_length_);
-    const double begin = angles_.of(first), end = angles_.of(second);
-    if (model_ != SkeletonModel::Integral) {
-      add(segments(), mapped, (begin + end) / 2);
-      if (model_ == SkeletonModel::Distance && field_.direction_bounds.empty()) segments().strands.push_back(strand_);
-      return;
-    }
-    add(field_.segments, mapped, begin);
-    if (field_.alpha_per_skeleton) field_.segments.alphas_to.push_back(end);
+    add(segments(), mapped, angles_.of(first));
+    add_angle(segments().alphas_to, second);
+    if (model_ == SkeletonModel::Distance && field_.direction_bounds.empty()) segments().strands.push_back(strand_);
   }
 
   BlendField& field_;

@@ -58,12 +58,6 @@ NodeAngles::NodeAngles(const Primitive& primitive, const Alpha& rule, double oth
   if (angles_.empty()) angles_ = {otherwise};
 }
 
-double NodeAngles::mean() const {
-  double sum = 0;
-  for (const double angle : angles_) sum += angle;
-  return sum / static_cast<double>(angles_.size());
-}
-
 std::size_t node_count(const Primitive& primitive) { return radii_of(primitive).size(); }
 
 }  // namespace marrow

@@ -16,7 +16,6 @@ class NodeAngles {
   NodeAngles(const Primitive&, const Alpha& rule, double otherwise);
 
   double of(std::size_t node) const { return angles_.size() == 1 ? angles_.front() : angles_[node]; }
-  double mean() const;
 
  private:
   std::vector<double> angles_;

@@ -8,7 +8,7 @@ template <Derivatives Order>
 SkeletonSample arc_field(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
   const Profile profile(kernel, 1);
   return integrate_arc<SkeletonSample>(
-      arc, p, kernel, [&](const Vec3d& v, double tau, double weight, SkeletonSample& sum) {
+      arc, p, kernel, [&](const Vec3d& v, double tau, double, double weight, SkeletonSample& sum) {
         add_source<Order>(profile, v, tau, weight / (profile.normalisation() * tau), sum);
       });
 }

@@ -8,32 +8,29 @@
 
 #include "field/kernel/profile.h"
 #include "field/skeleton/arc_view.h"
+#include "field/skeleton/corners.h"
 #include "field/skeleton/nearest_place.h"
 #include "field/skeleton/skeletons.h"
 
 namespace marrow {
 namespace {
 
-// The place q of a skeleton with the smallest scaled distance, and how it and its radius move with p: 0 at ends and
-// corners, where it stays.
-struct Nearest {
-  Vec3d at;
-  double radius;
-  Matrix3 moves{};
-  Vec3d radius_gradient{};
+// The place q, with how its radius and its place along a curve move with p.
+struct Nearest : NearestPlace {
+  Vec3d radius_gradient{}, along_gradient{};
 
-  double scaled_squared(const Vec3d& p) const { return length_squared(p - at) / (radius * radius); }
+  double scaled_squared() const { return length_squared(to_point) / (radius * radius); }
 };
 
 // f = k(y), y = |v|^2 / tau^2. As e is stationary at q, grad y = 2 v / tau^2; in the Jacobian of
 // grad_S f = 2 k'(y) v / tau place and radius move.
 template <Derivatives Order>
-SkeletonSample sample_at(const Nearest& q, const Vec3d& p, const Kernel& kernel) {
-  const Vec3d v = p - q.at;
+SkeletonSample sample_at(const Nearest& q, const Kernel& kernel) {
+  const Vec3d v = q.to_point;
   const double tau = q.radius;
   if (kernel.family == KernelFamily::Inverse && v == Vec3d{}) return SkeletonSample::on_skeleton();
   const Profile profile(kernel, 0);
-  const auto [value, slope, curvature] = profile.at(q.scaled_squared(p));
+  const auto [value, slope, curvature] = profile.at(q.scaled_squared());
   const double k = 2 * slope / profile.normalisation();
   SkeletonSample s;
   s.value = value / profile.normalisation();
@@ -49,36 +46,39 @@ SkeletonSample sample_at(const Nearest& q, const Vec3d& p, const Kernel& kernel)
 
 // Along a curve q(t) with q' and q'' and radius slope, where ln e = ln |p - q| - ln tau is stationary at q:
 // dt/dp = (q'/d^2 - 2 (v.q') v/d^4) / (ln e)''.
-void let_move(Nearest& q, const Vec3d& p, const Vec3d& first, const Vec3d& second, double radius_slope) {
-  const Vec3d v = p - q.at;
+void let_move(Nearest& q, const Vec3d& first, const Vec3d& second, double radius_slope) {
+  const Vec3d v = q.to_point;
   const double d2 = length_squared(v), along = dot(v, first) / d2, fall = radius_slope / q.radius;
   const double bend = (length_squared(first) - dot(v, second)) / d2 - 2 * along * along + fall * fall;
   if (!(bend > 0) || !(d2 > 0)) return;
   const Vec3d t_gradient = (first / d2 - v * (2 * along / d2)) / bend;
   q.moves = Matrix3::outer(first, t_gradient);
   q.radius_gradient = t_gradient * radius_slope;
+  q.along_gradient = t_gradient;
 }
 
-Nearest nearer(const Nearest& a, const Nearest& b, const Vec3d& p) {
-  return b.scaled_squared(p) < a.scaled_squared(p) ? b : a;
-}
+Nearest nearer(const Nearest& a, const Nearest& b) { return b.scaled_squared() < a.scaled_squared() ? b : a; }
 
 // With the foot at tau_f and height h, e is stationary at sigma h^2 / tau_f beyond the foot, a minimum for tau_f > 0.
 //                                                                                          [field-maths 3.2]
 Nearest nearest_of(const SegmentSkeleton& s, const Vec3d& p) {
   const double length = marrow::length(s.to - s.from);
-  const Vec3d u = (s.to - s.from) / length;
-  const double foot = dot(p - s.from, u), slope = (s.radius_to - s.radius_from) / length;
+  const Vec3d u = (s.to - s.from) / length, from_start = p - s.from;
+  const double foot = dot(from_start, u), slope = (s.radius_to - s.radius_from) / length;
   const double foot_radius = s.radius_from + slope * foot;
   if (foot_radius > 0) {
-    const double t = foot + slope * length_squared(p - s.from - u * foot) / foot_radius;
+    const Vec3d across = from_start - u * foot;
+    const double ahead = slope * length_squared(across) / foot_radius, t = foot + ahead;
     if (t > 0 && t < length) {
-      Nearest inside{s.from + u * t, s.radius_from + slope * t};
-      let_move(inside, p, u, {}, slope);
+      Nearest inside{{across - u * ahead, s.radius_from + slope * t}};
+      let_move(inside, u, {}, slope);
+      inside.shares[0] = {t / length, inside.along_gradient / length};
       return inside;
     }
   }
-  return nearer({s.from, s.radius_from}, {s.to, s.radius_to}, p);
+  Nearest start{{from_start, s.radius_from}}, end{{p - s.to, s.radius_to}};
+  end.shares[0].value = 1;
+  return nearer(start, end);
 }
 
 // In the plane likewise, with the gradient of the radius in place of the slope. `inside` when it is in the triangle.
@@ -87,33 +87,36 @@ struct PlaneNearest {
   bool inside;
 };
 PlaneNearest nearest_in_plane(const TriangleSkeleton& s, const Vec3d& p) {
-  const Vec3d a = s.vertices[1] - s.vertices[0], b = s.vertices[2] - s.vertices[0], normal = cross(a, b);
-  const double area2 = length_squared(normal);
-  // dual vectors: barycentric coordinates are dot(x - vertex 0, dual)
-  const Vec3d dual1 = cross(b, normal) / area2, dual2 = cross(normal, a) / area2;
-  const Vec3d rise = dual1 * (s.radii[1] - s.radii[0]) + dual2 * (s.radii[2] - s.radii[0]);
-  const double height = dot(p - s.vertices[0], normal) / std::sqrt(area2);
-  const Vec3d foot = p - normal * (dot(p - s.vertices[0], normal) / area2);
-  const double foot_radius = s.radii[0] + dot(foot - s.vertices[0], rise);
+  const Corners corners(s);
+  const auto& dual = corners.dual;
+  const Vec3d rise = dual[0] * (s.radii[1] - s.radii[0]) + dual[1] * (s.radii[2] - s.radii[0]);
+  const Vec3d n = corners.normal / std::sqrt(corners.area2), from_corner = p - s.vertices[0];
+  const double height = dot(from_corner, n);
+  const Vec3d over = n * height, foot = from_corner - over;
+  const double foot_radius = s.radii[0] + dot(foot, rise);
   if (!(foot_radius > 0)) return {{}, false};
-  const Vec3d q = foot + rise * (height * height / foot_radius), from = q - s.vertices[0];
-  const double first = dot(from, dual1), second = dot(from, dual2);
+  const Vec3d beside = rise * (height * height / foot_radius), q = foot + beside;
+  const double first = dot(q, dual[0]), second = dot(q, dual[1]);
   if (!(first >= 0 && second >= 0 && first + second <= 1)) return {{}, false};
-  Nearest at{q, s.radii[0] + dot(from, rise)};
+  Nearest at{{over - beside, s.radii[0] + dot(q, rise)}};
   // q = foot + rise height^2 / tau_f, by the chain rule
-  const Vec3d n = normal / std::sqrt(area2);
   const Vec3d step = n * (2 * height / foot_radius) - rise * (height * height / (foot_radius * foot_radius));
   at.moves = Matrix3::scaled_identity(1) + Matrix3::outer(n, n) * -1.0 + Matrix3::outer(rise, step);
   at.radius_gradient = at.moves.transposed_times(rise);
+  at.shares = {ShareSample{first, at.moves.transposed_times(dual[0])},
+               ShareSample{second, at.moves.transposed_times(dual[1])}};
   return {at, true};
 }
 
 Nearest nearest_of(const TriangleSkeleton& s, const Vec3d& p) {
   if (const auto [at, inside] = nearest_in_plane(s, p); inside) return at;
-  Nearest best{s.vertices[0], s.radii[0]};
+  Nearest best{{p - s.vertices[0], s.radii[0]}};
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
-    best = nearer(best, nearest_of(SegmentSkeleton{s.vertices[i], s.vertices[j], s.radii[i], s.radii[j]}, p), p);
+    Nearest edge = nearest_of(SegmentSkeleton{s.vertices[i], s.vertices[j], s.radii[i], s.radii[j]}, p);
+    const ShareSample share = edge.shares[0];
+    edge.shares = on_edge<ShareSample>(i, j, {1 - share.value, share.gradient * -1.0}, share);
+    best = nearer(best, edge);
   }
   return best;
 }
@@ -121,7 +124,6 @@ Nearest nearest_of(const TriangleSkeleton& s, const Vec3d& p) {
 // An arc as a curve over the angle.
 struct ArcCurve {
   ArcView view;
-  Vec3d p;
   double radius_begin, radius_slope;
 
   double radius(double angle) const { return radius_begin + radius_slope * (angle - view.begin); }
@@ -135,14 +137,17 @@ struct ArcCurve {
   }
   Nearest at(double angle) const {
     const auto half = sincos(angle / 2);
-    return {p - view.from_arc(half), radius(angle)};
+    Nearest q{{view.from_arc(half), radius(angle)}};
+    q.shares[0].value = (angle - view.begin) / (view.end - view.begin);
+    return q;
   }
   Nearest moving_at(double angle) const {
     Nearest q = at(angle);
     const auto [sine, cosine] = sincos(angle);
     const Vec3d first = (view.tangential * cosine - view.radial * sine) * view.major;
     const Vec3d second = (view.radial * cosine + view.tangential * sine) * -view.major;
-    let_move(q, p, first, second, radius_slope);
+    let_move(q, first, second, radius_slope);
+    q.shares[0].gradient = q.along_gradient / (view.end - view.begin);
     return q;
   }
 };
@@ -158,10 +163,10 @@ double minimum_between(const ArcCurve& curve, double low, double high) {
 
 Nearest nearest_of(const ArcSkeleton& s, const Vec3d& p) {
   const ArcView view = view_from(s, p);
-  const ArcCurve curve{view, p, s.radius_from, (s.radius_to - s.radius_from) / (view.end - view.begin)};
+  const ArcCurve curve{view, s.radius_from, (s.radius_to - s.radius_from) / (view.end - view.begin)};
   const bool is_closed = s.end - s.begin >= 2 * std::numbers::pi * (1 - 1e-12);
   if (curve.radius_slope == 0 && (is_closed || (view.begin <= 0 && view.end >= 0))) return curve.moving_at(0);
-  Nearest best = nearer(curve.at(view.begin), curve.at(view.end), p);
+  Nearest best = nearer(curve.at(view.begin), curve.at(view.end));
   if (curve.radius_slope == 0) return best;
   // e^2 is a sine against a parabola and has few minima in a turn; each is wider than a 64th of it but where the radius
   // falls to less than that share, or the minima are level with each other
@@ -170,30 +175,29 @@ Nearest nearest_of(const ArcSkeleton& s, const Vec3d& p) {
   for (int i = 0; i < parts; ++i) {
     const double low = view.begin + step * i, high = i + 1 == parts ? view.end : view.begin + step * (i + 1);
     if (curve.slope(low) < 0 && curve.slope(high) >= 0)
-      best = nearer(best, curve.moving_at(minimum_between(curve, low, high)), p);
+      best = nearer(best, curve.moving_at(minimum_between(curve, low, high)));
   }
   return best;
 }
 
-NearestPlace place_of(const Nearest& q) { return {q.at, q.radius, !(q.moves == Matrix3{})}; }
-
 }  // namespace
 
-NearestPlace nearest_place(const SegmentSkeleton& s, const Vec3d& p) { return place_of(nearest_of(s, p)); }
-NearestPlace nearest_place(const ArcSkeleton& s, const Vec3d& p) { return place_of(nearest_of(s, p)); }
+NearestPlace nearest_place(const SegmentSkeleton& s, const Vec3d& p) { return nearest_of(s, p); }
+NearestPlace nearest_place(const TriangleSkeleton& s, const Vec3d& p) { return nearest_of(s, p); }
+NearestPlace nearest_place(const ArcSkeleton& s, const Vec3d& p) { return nearest_of(s, p); }
 
 template <Derivatives Order>
 SkeletonSample distance_field(const SegmentSkeleton& s, const Vec3d& p, const Kernel& kernel) {
   if (s.from == s.to) return {};
-  return sample_at<Order>(nearest_of(s, p), p, kernel);
+  return sample_at<Order>(nearest_of(s, p), kernel);
 }
 template <Derivatives Order>
 SkeletonSample distance_field(const TriangleSkeleton& s, const Vec3d& p, const Kernel& kernel) {
-  return sample_at<Order>(nearest_of(s, p), p, kernel);
+  return sample_at<Order>(nearest_of(s, p), kernel);
 }
 template <Derivatives Order>
 SkeletonSample distance_field(const ArcSkeleton& s, const Vec3d& p, const Kernel& kernel) {
-  return sample_at<Order>(nearest_of(s, p), p, kernel);
+  return sample_at<Order>(nearest_of(s, p), kernel);
 }
 
 template SkeletonSample distance_field<Derivatives::ScaleInvariant>(const SegmentSkeleton&, const Vec3d&,

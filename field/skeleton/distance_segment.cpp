@@ -9,9 +9,10 @@
 namespace marrow {
 namespace {
 
-// The point of the segment with the smallest scaled distance.
+// The point of the segment with the smallest scaled distance. What leads from it to p is made of differences from an
+// end, so that it loses nothing however far both are from the origin.
 struct Nearest {
-  Vec3d at;
+  Vec3d to_point;
   double radius;
   bool inside;  // not an end: the scaled distance is stationary there
 };
@@ -19,18 +20,19 @@ struct Nearest {
 // With p at height h over the line and t from its foot, e^2 = (t^2 + h^2) / (tau_f + sigma t)^2 is stationary
 // at t = sigma h^2 / tau_f, a minimum where tau_f > 0.   [field-maths 3.2]
 Nearest nearest_on(const SegmentSkeleton& segment, const Vec3d& p, double length, const UnitVec3& u) {
-  const double foot = dot(p - segment.from, u);
-  const Vec3d across = p - segment.from - u * foot;
+  const Vec3d from_start = p - segment.from, from_end = p - segment.to;
+  const double foot = dot(from_start, u);
+  const Vec3d across = from_start - u * foot;
   const double slope = (segment.radius_to - segment.radius_from) / length;
   const double foot_radius = segment.radius_from + slope * foot;
   if (foot_radius > 0) {
-    const double s = foot + slope * length_squared(across) / foot_radius;
-    if (s > 0 && s < length) return {segment.from + u * s, segment.radius_from + slope * s, true};
+    const double ahead = slope * length_squared(across) / foot_radius, s = foot + ahead;
+    if (s > 0 && s < length) return {across - u * ahead, segment.radius_from + slope * s, true};
   }
-  const double first = length_squared(p - segment.from) / (segment.radius_from * segment.radius_from);
-  const double second = length_squared(p - segment.to) / (segment.radius_to * segment.radius_to);
-  if (first <= second) return {segment.from, segment.radius_from, false};
-  return {segment.to, segment.radius_to, false};
+  const double first = length_squared(from_start) / (segment.radius_from * segment.radius_from);
+  const double second = length_squared(from_end) / (segment.radius_to * segment.radius_to);
+  if (first <= second) return {from_start, segment.radius_from, false};
+  return {from_end, segment.radius_to, false};
 }
 
 // How the direction v/d from the nearest point turns, as its Jacobian. Inside a cone-like segment
@@ -55,13 +57,13 @@ SkeletonSample distance_segment_field(const SegmentSkeleton& segment, const Vec3
   if (!(length > 0)) return {};
   const UnitVec3 u = UnitVec3::unchecked((segment.to - segment.from) / length);
   const Nearest nearest = nearest_on(segment, p, length, u);
-  const PointSkeleton point{nearest.at, nearest.radius};
+  const PointSkeleton point{{}, nearest.radius};
   if constexpr (Order >= Derivatives::Second) {
-    SkeletonSample s = point_field<Order>(point, p, n);
-    const double d = marrow::length(p - nearest.at);
+    SkeletonSample s = point_field<Order>(point, nearest.to_point, n);
+    const double d = marrow::length(nearest.to_point);
     if (!nearest.inside || s.si_gradient == Vec3d{}) return s;
     // grad_S f = k'(e) v/d:  J = k''(e) v/d (grad e)^T + k'(e) J(v/d),  grad e = v/d / radius
-    const Vec3d direction = (p - nearest.at) / d;
+    const Vec3d direction = nearest.to_point / d;
     const double slope = -marrow::length(s.si_gradient);       // k'(e)
     const double curvature = -n * slope * nearest.radius / d;  // k''(e) = n (n-1) e^-(n+1)
     const double sigma = (segment.radius_to - segment.radius_from) / length;
@@ -69,7 +71,7 @@ SkeletonSample distance_segment_field(const SegmentSkeleton& segment, const Vec3
                     direction_jacobian(direction, u, d, nearest.radius, sigma) * slope;
     return s;
   } else {
-    return point_field<Order>(point, p, n);
+    return point_field<Order>(point, nearest.to_point, n);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "field/skeleton/compact_line.h"
+#include "field/skeleton/differences.h"
 #include "field/skeleton/second_order_source.h"
 #include "field/skeleton/seen_line.h"
 #include "field/skeleton/skeletons.h"
@@ -14,10 +15,6 @@
 
 namespace marrow {
 namespace {
-
-// Of a radius: what a quadrature is off by, some 1e-12, becomes 1e-9 and 1e-5. Shorter steps are for places beside
-// those where the edge of a support touches a skeleton.
-constexpr double longest_step = 1e-3, shortest_step = 1e-7;
 
 // The surface integrals are made for samples.
 struct Sum : SkeletonSample {
@@ -28,69 +25,6 @@ struct Sum : SkeletonSample {
     return *this;
   }
 };
-
-// Differences of the first derivatives with steps h and 2h, combined to fourth order.
-template <class Plain>
-SecondOrderSample by_steps(const Plain& plain, const Vec3d& p, double h) {
-  SecondOrderSample s;
-  const auto first = [](const SkeletonSample& x) {
-    return std::array{x.gradient, x.si_jacobian.rows[0], x.si_jacobian.rows[1], x.si_jacobian.rows[2]};
-  };
-  const SkeletonSample here = plain(p);
-  const std::array<HessianJet*, 4> jets{&s.field, &s.si.x, &s.si.y, &s.si.z};
-  const auto slopes = first(here);
-  for (std::size_t q = 0; q < 4; ++q) {
-    jets[q]->value = q == 0 ? here.value : here.si_gradient[q - 1];
-    jets[q]->slope = {slopes[q].x, slopes[q].y, slopes[q].z};
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto at = [&](double step) {
-      Vec3d moved = p;
-      moved[axis] += step;
-      return first(plain(moved));
-    };
-    const auto ahead = at(h), behind = at(-h), far_ahead = at(2 * h), far_behind = at(-2 * h);
-    for (std::size_t q = 0; q < 4; ++q) {
-      const Vec3d row = ((ahead[q] - behind[q]) * 8.0 - (far_ahead[q] - far_behind[q])) / (12 * h);
-      for (std::size_t k = 0; k < 6; ++k) {
-        const auto [i, j] = HessianJet::at[k];
-        if (i == axis) jets[q]->curvature[k] += row[j] * 0.5;
-        if (j == axis) jets[q]->curvature[k] += row[i] * 0.5;
-      }
-    }
-  }
-  return s;
-}
-
-double difference(const SecondOrderSample& a, const SecondOrderSample& b) {
-  double sum = 0;
-  for (std::size_t k = 0; k < 6; ++k) {
-    sum += std::fabs(a.field.curvature[k] - b.field.curvature[k]);
-    for (std::size_t c = 0; c < 3; ++c) sum += std::fabs(a.si[c].curvature[k] - b.si[c].curvature[k]);
-  }
-  return sum;
-}
-
-// By the two neighbouring steps that agree best. Only for arcs and triangles under the compact kernel, whose edge cuts
-// them anywhere: what the edge adds to the derivatives is not under the integral.
-template <class Plain>
-SecondOrderSample by_differences(const Plain& plain, const Vec3d& p, double radius) {
-  constexpr double enough = 1e-9;
-  double h = longest_step * radius, least = std::numeric_limits<double>::infinity();
-  SecondOrderSample best, longer = by_steps(plain, p, h);
-  while (h > shortest_step * radius) {
-    h /= 8;
-    const SecondOrderSample shorter = by_steps(plain, p, h);
-    const double off = difference(longer, shorter);
-    if (off < least) {
-      least = off;
-      best = shorter;
-    }
-    if (off <= enough * difference(shorter, {})) break;
-    longer = shorter;
-  }
-  return best;
-}
 
 SecondOrderSample limited(const SecondOrderSample& s) {
   return s.field.value <= field_ceiling ? s : SecondOrderSample::on_skeleton();
@@ -118,26 +52,12 @@ SecondOrderSample second_order(const SegmentSkeleton& segment, const Vec3d& p, c
   return limited(sum);
 }
 
-HessianJet second_order_share(const SegmentSkeleton& segment, const Vec3d& p, const Kernel& kernel) {
-  HessianJet share;
-  if (segment.from == segment.to) return share;
-  if (kernel.family == KernelFamily::Compact) return compact_line(segment, p, kernel, true).field;
-  const auto [length, foot, u, across, line] = seen_from(segment, p);
-  if (is_on_line(line, kernel)) return share;
-  const Profile profile(kernel, 1);
-  integrate_line(line, kernel, [&](double t, double weight) {
-    const double tau = segment.radius_from + line.slope * (t + foot);
-    const double part = weight / (profile.normalisation() * tau) * ((t + foot) / length);
-    share += second_order_source(profile, across - u * t, tau, part).field;
-  });
-  return share;
-}
-
 SecondOrderSample second_order(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
   if (kernel.family == KernelFamily::Compact) {
     const double radius = std::min({triangle.radii[0], triangle.radii[1], triangle.radii[2]});
-    return by_differences([&](const Vec3d& q) { return triangle_field<Derivatives::Second>(triangle, q, kernel); }, p,
-                          radius);
+    TriangleSkeleton seen = triangle;
+    for (Vec3d& v : seen.vertices) v = v - p;
+    return by_differences([&](const Vec3d& q) { return triangle_field<Derivatives::Second>(seen, q, kernel); }, radius);
   }
   bool foot_is_inside = false;
   const TriangleView v = best_view(triangle, p, foot_is_inside);
@@ -150,14 +70,17 @@ SecondOrderSample second_order(const TriangleSkeleton& triangle, const Vec3d& p,
 }
 
 SecondOrderSample second_order(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
-  if (kernel.family == KernelFamily::Compact)
-    return by_differences([&](const Vec3d& q) { return arc_field<Derivatives::Second>(arc, q, kernel); }, p,
+  if (kernel.family == KernelFamily::Compact) {
+    ArcSkeleton seen = arc;
+    seen.center = arc.center - p;
+    return by_differences([&](const Vec3d& q) { return arc_field<Derivatives::Second>(seen, q, kernel); },
                           std::min(arc.radius_from, arc.radius_to));
+  }
   if (kernel.family == KernelFamily::Inverse &&
       arc_field<Derivatives::ScaleInvariant>(arc, p, kernel.degree).value > field_ceiling)
     return SecondOrderSample::on_skeleton();
   const Profile profile(kernel, 1);
-  return limited(integrate_arc<Sum>(arc, p, kernel, [&](const Vec3d& v, double tau, double weight, Sum& sum) {
+  return limited(integrate_arc<Sum>(arc, p, kernel, [&](const Vec3d& v, double tau, double, double weight, Sum& sum) {
                    sum.second += second_order_source(profile, v, tau, weight / (profile.normalisation() * tau));
                  }).second);
 }

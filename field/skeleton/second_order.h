@@ -1,6 +1,8 @@
 // Fields of single primitives with all second derivatives: what the Hessian of a corrected field is made of.
 #pragma once
 
+#include <array>
+
 #include "field/description/field_node.h"
 #include "field/number/functions.h"
 #include "field/skeleton/skeleton_sample.h"
@@ -42,7 +44,17 @@ SecondOrderSample second_order_by_distance(const ArcSkeleton&, const Vec3d& p, c
 /// Cani and Hornus 2001, as of cani_hornus_field().   [field-maths 8.1]
 SecondOrderSample second_order_of_cani_hornus(const SegmentSkeleton&, const Vec3d& p);
 
-/// segment_share() with its Hessian.
-HessianJet second_order_share(const SegmentSkeleton&, const Vec3d& p, const Kernel&);
+/// What shares.h tells, with Hessians. The nearest ones are places alone, not weighted by the field.
+using SecondOrderShares = std::array<HessianJet, 2>;
+SecondOrderShares second_order_shares(const PointSkeleton&, const Vec3d& p, const Kernel&);
+SecondOrderShares second_order_shares(const SegmentSkeleton&, const Vec3d& p, const Kernel&);
+SecondOrderShares second_order_shares(const TriangleSkeleton&, const Vec3d& p, const Kernel&);
+SecondOrderShares second_order_shares(const ArcSkeleton&, const Vec3d& p, const Kernel&);
+SecondOrderShares second_order_nearest_shares(const SegmentSkeleton&, const Vec3d& p);
+SecondOrderShares second_order_nearest_shares(const TriangleSkeleton&, const Vec3d& p);
+SecondOrderShares second_order_nearest_shares(const ArcSkeleton&, const Vec3d& p);
+SecondOrderShares second_order_foot_shares(const SegmentSkeleton&, const Vec3d& p);
+Vec3<HessianJet> second_order_direction(const ArcSkeleton&, const Vec3d& p, const Kernel&);
+Vec3<HessianJet> second_order_nearest_direction(const ArcSkeleton&, const Vec3d& p);
 
 }  // namespace marrow

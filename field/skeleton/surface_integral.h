@@ -137,7 +137,8 @@ Sum integrate_inverse_lines(const TriangleView& v, const Kernel& kernel, const V
 
 }  // namespace surface_integral
 
-/// Calls visit(v, tau, weight, sum) with v from a node of the arc to p, tau its radius, and returns the sum.
+/// Calls visit(v, tau, share, weight, sum) with v from a node of the arc to p, tau its radius and share its place, 0 at
+/// the begin and 1 at the end, and returns the sum.
 /// Precondition: p is not on the arc under the inverse kernel.
 template <class Sum, class Visit>
 Sum integrate_arc(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel, const Visit& visit) {
@@ -145,8 +146,8 @@ Sum integrate_arc(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel, 
   const ArcView v = view_from(arc, p);
   const double tau_slope = (arc.radius_to - arc.radius_from) / (v.end - v.begin);
   const auto at = [&](double angle, double turn, double weight, Sum& sum) {
-    const double tau = arc.radius_from + tau_slope * (angle + turn - v.begin);
-    visit(v.from_arc(sincos(angle / 2)), tau, weight * arc.major, sum);
+    const double from_begin = angle + turn - v.begin, tau = arc.radius_from + tau_slope * from_begin;
+    visit(v.from_arc(sincos(angle / 2)), tau, from_begin / (v.end - v.begin), weight * arc.major, sum);
   };
   if (kernel.family == KernelFamily::Inverse) return integrate_inverse_arc<Sum>(v, at);
   if (kernel.family == KernelFamily::Cauchy)

@@ -67,7 +67,7 @@ const Table<WrittenAlpha>& alpha_table() {
         "alpha", "A projection angle that varies from place to place.",
         {key<A>("direction", &A::direction, direction_bounds_form(),
                 "[crossing, parallel]: the angle by the directions of strands; a polyline, a curve and a "
-                "skeleton is one strand, points have no direction (eq. 15)"),
+                "skeleton is one strand, points and triangles have no direction (eq. 15)"),
          key<A>("attribute", &A::attribute, name_of("the name of an attribute"),
                 "the angle from an attribute of the skeletons, linear along them, or from their `radius`; "
                 "contact for those without it"),

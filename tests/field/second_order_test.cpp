@@ -14,7 +14,6 @@
 #include "field/blend/curvature.h"
 #include "field/blend/gather.h"
 #include "field/number/quotients.h"
-#include "field/skeleton/shares.h"
 #include "field/skeleton/skeletons.h"
 #include "tests/field/random.h"
 #include "tests/field/varied_blend.h"
@@ -147,22 +146,6 @@ TEST(SecondOrder, OfEverySkeletonAndKernel) {
   std::cout << "  " << checked << " Hessians, " << rough << " at kinks\n";
   EXPECT_GT(checked, 2000);
   EXPECT_LT(rough, checked / 5);
-}
-
-TEST(SecondOrder, OfASegmentsShare) {
-  Random random(702);
-  for (int round = 0; round < 100; ++round) {
-    const Kernel kernel = random_kernel(random, round % 3);
-    const SegmentSkeleton segment = random.segment();
-    const Vec3d p = random.vector(2);
-    const ShareSample s = segment_share(segment, p, kernel);
-    if (s.value > 20) continue;
-    const HessianJet jet = second_order_share(segment, p, kernel);
-    EXPECT_LE(relative(s.value, jet.value), 1e-12);
-    const Differences d =
-        differences_of([&](const Vec3d& q) { return segment_share(segment, q, kernel).gradient; }, p, 1e-4);
-    EXPECT_LE(magnitude(d.rows + curvatures_of(jet) * -1.0), d.change + 1e-7 * magnitude(d.rows)) << round;
-  }
 }
 
 // In every branch: below and above the curve, in the cavity, under the guard; near critical points too.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <vector>
 
 #include "field/blend/blend_field.h"
 #include "field/blend/local_contact.h"
@@ -25,6 +26,12 @@ class WavingAngle : public AlphaSource {
   Interval bounds(const Box3&) const override { return {0.1, 0.7}; }
 };
 
+template <class Fill>
+void fill_all(BlendField& blend, const Fill& fill) {
+  fill(blend.points), fill(blend.segments), fill(blend.distance_segments), fill(blend.cani_hornus_segments);
+  fill(blend.triangles), fill(blend.distance_triangles), fill(blend.arcs), fill(blend.distance_arcs);
+}
+
 /// Rules: 0 constant, 1 per skeleton, 2 by direction, 3 local contact, 4 from a source.
 inline void give_angles(BlendField& blend, Random& random, int rule) {
   if (rule == 1) {
@@ -32,15 +39,21 @@ inline void give_angles(BlendField& blend, Random& random, int rule) {
     const auto fill = [&](auto& list) {
       for (std::size_t i = 0; i < list.size(); ++i) list.alphas.push_back(random.between(0.1, 1.4));
     };
-    fill(blend.points), fill(blend.segments), fill(blend.arcs), fill(blend.triangles), fill(blend.distance_segments);
-    for (std::size_t i = 0; i < blend.segments.size(); ++i)
-      blend.segments.alphas_to.push_back(random.between(0.1, 1.4));
+    fill_all(blend, fill);
+    const auto rise = [&](const auto& list, std::vector<double>& angles) {
+      for (std::size_t i = 0; i < list.size(); ++i) angles.push_back(random.between(0.1, 1.4));
+    };
+    fill_all(blend, [&](auto& list) {
+      if (static_cast<const void*>(&list) != &blend.points) rise(list, list.alphas_to);
+    });
+    rise(blend.triangles, blend.triangles.alphas_third);
+    rise(blend.distance_triangles, blend.distance_triangles.alphas_third);
   } else if (rule == 2) {
     std::uint32_t strand = 0;
     const auto fill = [&](auto& list) {
       for (std::size_t i = 0; i < list.size(); ++i) list.strands.push_back(strand++);
     };
-    fill(blend.points), fill(blend.segments), fill(blend.arcs), fill(blend.triangles), fill(blend.distance_segments);
+    fill_all(blend, fill);
     for (std::uint32_t i = 0; i < strand; ++i) blend.direction_bounds.push_back({random.between(0, 0.5), 1.3});
   } else if (rule == 3) {
     const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
@@ -69,7 +82,12 @@ inline BlendField varied_blend(Random& random, int round) {
     blend.alpha = std::max(0.0, blend.alpha);
   }
   if (!mirrored) blend.arcs.add(random.arc(), {});
-  if (!mirrored) give_angles(blend, random, round % 11 % 5);
+  if (!mirrored && round % 5 == 1) blend.distance_arcs.add(random.arc(), {});
+  if (!mirrored && round % 5 == 2) blend.distance_triangles.add(random.triangle(), {});
+  const int rule = round % 11 % 5;
+  if (!mirrored && blend.kernel == KernelFamily::Inverse && blend.degree == 3 && rule != 3)
+    blend.cani_hornus_segments.add(random.segment(), {});
+  if (!mirrored) give_angles(blend, random, rule);
   return blend;
 }
 

@@ -1,0 +1,127 @@
+// Second derivatives of the shares of nodes and of the directions of arcs.
+#include <algorithm>
+#include <cstddef>
+
+#include "field/kernel/profile.h"
+#include "field/skeleton/compact_line.h"
+#include "field/skeleton/corners.h"
+#include "field/skeleton/differences.h"
+#include "field/skeleton/second_order.h"
+#include "field/skeleton/second_order_source.h"
+#include "field/skeleton/seen_line.h"
+#include "field/skeleton/shares.h"
+#include "field/skeleton/skeletons.h"
+#include "field/skeleton/surface_integral.h"
+
+namespace marrow {
+namespace {
+
+using X = HessianJet;
+
+// The surface integrals are made for samples.
+struct Sum : SkeletonSample {
+  SecondOrderShares shares{};
+  Vec3<X> direction{};
+  Sum& operator+=(const Sum& b) {
+    SkeletonSample::operator+=(b);
+    for (std::size_t k = 0; k < shares.size(); ++k) shares[k] += b.shares[k];
+    direction += b.direction;
+    return *this;
+  }
+};
+
+X share_of_end(const SegmentSkeleton& segment, const Vec3d& p, const Kernel& kernel) {
+  X share;
+  if (segment.from == segment.to) return share;
+  if (kernel.family == KernelFamily::Compact) return compact_line(segment, p, kernel, true).field;
+  const auto [length, foot, u, across, line] = seen_from(segment, p);
+  if (is_on_line(line, kernel)) return share;
+  const Profile profile(kernel, 1);
+  integrate_line(line, kernel, [&](double t, double weight) {
+    const double tau = segment.radius_from + line.slope * (t + foot);
+    const double part = weight / (profile.normalisation() * tau) * ((t + foot) / length);
+    share += second_order_source(profile, across - u * t, tau, part).field;
+  });
+  return share;
+}
+
+// Under the compact kernel: its first share as the field of a sample, its direction as the other field.
+SecondOrderSample compact_along(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
+  ArcSkeleton seen = arc;
+  seen.center = arc.center - p;
+  const auto plain = [&](const Vec3d& q) {
+    const ShareSample share = integral_shares(seen, q, kernel)[0];
+    const DirectionSample direction = arc_direction(seen, q, kernel);
+    return SkeletonSample{share.value, share.gradient, direction.value, direction.jacobian};
+  };
+  return by_differences(plain, std::min(arc.radius_from, arc.radius_to));
+}
+
+Sum along(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
+  if (kernel.family == KernelFamily::Inverse &&
+      arc_field<Derivatives::ScaleInvariant>(arc, p, kernel.degree).value > field_ceiling)
+    return {};
+  const Profile profile(kernel, 1);
+  const Vec3d axis = cross(arc.axis1, arc.axis2), from_center = p - arc.center;
+  return integrate_arc<Sum>(arc, p, kernel, [&](const Vec3d& v, double tau, double share, double weight, Sum& sum) {
+    const double part = weight / (profile.normalisation() * tau);
+    const X field = second_order_source(profile, v, tau, part).field;
+    const Vec3d tangent = cross(axis, from_center - v) / arc.major;
+    sum.shares[0] += field * share;
+    sum.direction += Vec3<X>{field * tangent.x, field * tangent.y, field * tangent.z};
+  });
+}
+
+// Under the compact kernel: both shares as the field and a component of the other field of a sample.
+SecondOrderShares compact_shares(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
+  TriangleSkeleton seen = triangle;
+  for (Vec3d& v : seen.vertices) v = v - p;
+  const auto plain = [&](const Vec3d& q) {
+    const Shares shares = integral_shares(seen, q, kernel);
+    SkeletonSample sample{shares[0].value, shares[0].gradient, {shares[1].value, 0, 0}, {}};
+    sample.si_jacobian.rows[0] = shares[1].gradient;
+    return sample;
+  };
+  const auto found = by_differences(plain, std::min({triangle.radii[0], triangle.radii[1], triangle.radii[2]}));
+  return {found.field, found.si.x};
+}
+
+}  // namespace
+
+SecondOrderShares second_order_shares(const PointSkeleton&, const Vec3d&, const Kernel&) { return {}; }
+SecondOrderShares second_order_shares(const SegmentSkeleton& segment, const Vec3d& p, const Kernel& kernel) {
+  return {share_of_end(segment, p, kernel), X()};
+}
+SecondOrderShares second_order_shares(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
+  if (kernel.family == KernelFamily::Compact) return {compact_along(arc, p, kernel).field, X()};
+  return along(arc, p, kernel).shares;
+}
+SecondOrderShares second_order_shares(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
+  if (kernel.family == KernelFamily::Compact) return compact_shares(triangle, p, kernel);
+  bool foot_is_inside = false;
+  const TriangleView view = best_view(triangle, p, foot_is_inside);
+  if (kernel.family == KernelFamily::Inverse && foot_is_inside && view.p_normal == 0) return {};
+  const Profile profile(kernel, 2);
+  const Corners corners(triangle);
+  const Vec3d from_corner = p - triangle.vertices[0];
+  return integrate_triangle<Sum>(triangle, p, kernel,
+                                 [&](const Vec3d& v, double tau, double weight, Sum& sum) {
+                                   const double part = weight / (profile.normalisation() * tau * tau);
+                                   const X field = second_order_source(profile, v, tau, part).field;
+                                   for (std::size_t k = 0; k < 2; ++k)
+                                     sum.shares[k] += field * dot(from_corner - v, corners.dual[k]);
+                                 })
+      .shares;
+}
+
+SecondOrderShares second_order_foot_shares(const SegmentSkeleton& s, const Vec3d& p) {
+  const Vec3d along = s.to - s.from;
+  return {clamp(dot(variables_at(p) - s.from, along / length_squared(along)), 0, 1), X()};
+}
+
+Vec3<X> second_order_direction(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
+  if (kernel.family == KernelFamily::Compact) return compact_along(arc, p, kernel).si;
+  return along(arc, p, kernel).direction;
+}
+
+}  // namespace marrow
