@@ -8,13 +8,18 @@ namespace {
 constexpr double inf = Box3::inf;
 const Vec3<Interval> unknown{Interval::everything(), Interval::everything(), Interval::everything()};
 
-// C is monotone in alpha at each f and G, so that the two ends bound it between them.   [tracing 3.3]
+// C is monotone in alpha at each f and G, so that the two ends bound it between them [tracing 3.3]; but not with
+// cavity under the compact kernel.
 Interval corrected(const BlendField& blend, const Interval& alpha, const Interval& f, const Interval& G) {
   const auto with = [&](double a) {
-    return correction_bounds(
-        Correction({blend.kernel, blend.degree, blend.kernel_shape}, a, blend.cavity, blend.projection), f, G);
+    return Correction({blend.kernel, blend.degree, blend.kernel_shape}, a, blend.cavity, blend.projection);
   };
-  return alpha.lo == alpha.hi ? with(alpha.lo) : hull(with(alpha.lo), with(alpha.hi));
+  const Correction least = with(alpha.lo);
+  if (alpha.lo == alpha.hi) return correction_bounds(least, f, G);
+  const Correction most = with(alpha.hi);
+  if (blend.kernel == KernelFamily::Compact && blend.cavity)
+    return correction_bounds_between(*least.bounded(), *most.bounded(), f, G);
+  return hull(correction_bounds(least, f, G), correction_bounds(most, f, G));
 }
 
 // grad C = dC/df grad f + dC/dG grad G + dC/dalpha grad alpha with dG/dp_j = S . dS/dp_j / G, where |S_i / G| <= 1.

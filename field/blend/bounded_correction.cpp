@@ -40,7 +40,8 @@ BoundedCorrection::BoundedCorrection(const Kernel& kernel, double alpha, bool ca
 }
 
 // Above the curve, or exactly: the curve itself. Else the chord as a weighted mean (field-maths 4.1).
-double BoundedCorrection::projected(double f, double G) const {
+double BoundedCorrection::projected(const Place& place) const {
+  const auto [f, G] = place;
   if (projection_ == Projection::Exact || !(G < curve_.at(f)))
     return std::min(curve_.on_line(cos_, sin_, G * cos_ + f * sin_), std::max(f, curve_.top_field()));
   const double x_H = curve_.inverse(G), weight = curve_.chord_slope(f, G, x_H) * cos_, sum = weight + sin_;
@@ -48,7 +49,7 @@ double BoundedCorrection::projected(double f, double G) const {
 }
 
 BoundedCorrection::Slopes BoundedCorrection::projected_slopes(double f, double G) const {
-  const double value = projected(f, G);
+  const double value = projected({f, G});
   if (projection_ == Projection::Exact || !(G < curve_.at(f))) {
     const double slope = curve_.slope(value), sum = slope * cos_ + sin_;
     if (value >= std::max(f, curve_.top_field())) return {value, f > curve_.top_field() ? 1.0 : 0.0, 0, 0};
@@ -111,12 +112,15 @@ bool BoundedCorrection::in_cavity_branch(double f, double G) const {
   return f > smallest_field && behind_critical_point(f, G).has_value();
 }
 
-double BoundedCorrection::value(double f, double G) const {
-  if (!(f > smallest_field)) return std::max(f, 0.0);
-  const auto two = behind_critical_point(f, G);
-  if (!two) return projected(f, G);
+BoundedCorrection::Place BoundedCorrection::projected_from(double f, double G) const {
+  const auto two = f > smallest_field ? behind_critical_point(f, G) : std::nullopt;
+  if (!two) return {f, G};
   const Pair& D = two->critical;
-  return projected(D.psi * D.w / exponent_of(kernel_), 2 * D.psi * D.h);
+  return {D.psi * D.w / exponent_of(kernel_), 2 * D.psi * D.h};
+}
+
+double BoundedCorrection::value(double f, double G) const {
+  return f > smallest_field ? projected(projected_from(f, G)) : std::max(f, 0.0);
 }
 
 // In the cavity branch C is a function of B alone, and B of f and G^2.

@@ -35,6 +35,14 @@ class BoundedCorrection {
   BoundedCorrection(const Kernel&, double alpha, bool cavity, Projection);
 
   double value(double f, double G) const;
+  /// The place whose projection C is: (f, G) itself, or in the cavity branch the critical point before it. As alpha
+  /// grows that point comes nearer: its f rises, its G falls.
+  struct Place {
+    double f, G;
+  };
+  Place projected_from(double f, double G) const;
+  /// C without the cavity branch; monotone in alpha.
+  double projected(const Place&) const;
   CorrectionPartials partials(double f, double G) const;
   bool in_cavity_branch(double f, double G) const;
   /// Whether C > 1 all the way from the surface of a lone point to its middle.
@@ -49,7 +57,6 @@ class BoundedCorrection {
   struct TwoSkeletons;
   struct Pair;
 
-  double projected(double f, double G) const;
   Slopes projected_slopes(double f, double G) const;
   Pair pair_at(double f, double G) const;
   double steepness(double h, double B) const;

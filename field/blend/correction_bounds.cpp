@@ -105,4 +105,17 @@ Interval correction_bounds(const Correction& c, const Interval& f, const Interva
   return {least * (1 - 1e-9), most * (1 + 1e-9)};
 }
 
+// In the cavity branch what is projected moves with the angle while the projection turns, and C may fall, then rise.
+// The projection is isotone in both of its place's numbers and monotone in the angle: it is bounded over all places
+// between those of the two ends.
+Interval correction_bounds_between(const BoundedCorrection& least, const BoundedCorrection& most, const Interval& f,
+                                   const Interval& G) {
+  using Place = BoundedCorrection::Place;
+  const Place low = {least.projected_from(f.lo, G.lo).f, most.projected_from(f.lo, G.lo).G};
+  const Place high = {most.projected_from(f.hi, G.hi).f, least.projected_from(f.hi, G.hi).G};
+  // C(0, G) = 0, though the projection is not
+  return {std::min({least.projected(low), most.projected(low), least.value(f.lo, G.lo)}) * (1 - 1e-12),
+          std::max(least.projected(high), most.projected(high)) * (1 + 1e-12)};
+}
+
 }  // namespace marrow

@@ -8,6 +8,9 @@ namespace marrow {
 
 /// C over all f and G of the intervals.
 Interval correction_bounds(const Correction&, const Interval& f, const Interval& G);
+/// C over these and over all angles between those of two corrections that differ in nothing else.
+Interval correction_bounds_between(const BoundedCorrection& least, const BoundedCorrection& most, const Interval& f,
+                                   const Interval& G);
 
 struct PartialBounds {
   Interval df, dG;

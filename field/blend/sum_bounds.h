@@ -12,6 +12,9 @@ namespace marrow {
 /// point of the box, which follows from the least distance of each primitive.
 class SumBounds {
  public:
+  /// Relative error of integrals under the compact kernel, over what they could be at most.
+  static constexpr double compact_error = 1e-10;
+
   explicit SumBounds(const Box3&);
   SumBounds(const BlendField&, const Box3&);
 

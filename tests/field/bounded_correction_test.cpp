@@ -10,6 +10,7 @@
 
 #include "field/blend/blend_field.h"
 #include "field/blend/contact.h"
+#include "field/blend/correction_bounds.h"
 #include "field/skeleton/skeletons.h"
 #include "tests/field/random.h"
 
@@ -262,6 +263,30 @@ TEST(BoundedCorrection, LeavesNoCavityBetweenEqualSkeletonsWithExactProjection) 
   }
   std::cout << "  worst rise with the paper's projection " << worst_paper << '\n';
   EXPECT_LE(worst_paper, 0.05);
+}
+
+// With cavity C may fall, then rise with the angle: the ends of a range of angles do not bound it.
+TEST(BoundedCorrection, IsBoundedOverRangesOfAngles) {
+  Random random(57);
+  int outside_ends = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const Kernel kernel{KernelFamily::Compact, random.whole(3, 8), random.between(1.2, 4)};
+    const Projection projection = i % 2 == 0 ? Projection::Paper : Projection::Exact;
+    const auto with = [&](double alpha) { return BoundedCorrection(kernel, alpha, true, projection); };
+    const double a = random.between(0, 1.57), b = random.between(0, 1.57);
+    const BoundedCorrection least = with(std::min(a, b)), most = with(std::max(a, b));
+    const double top = least.curve().top_field(), f = random.between(0.1, 2.5) * top;
+    const double G = random.between(0, 1.5) * least.curve().at(std::min(f, top));
+    const Interval f_range{f, f * random.between(1, 1.1)}, G_range{G, G * random.between(1, 1.1)};
+    const Interval bounds = correction_bounds_between(least, most, f_range, G_range);
+    const double share = random.between(0, 1), angle = (1 - share) * std::min(a, b) + share * std::max(a, b);
+    const double low = with(angle).value(f_range.lo, G_range.lo), high = with(angle).value(f_range.hi, G_range.hi);
+    EXPECT_TRUE(bounds.lo <= low && high <= bounds.hi)
+        << low << " .. " << high << " in " << bounds.lo << " .. " << bounds.hi;
+    outside_ends +=
+        low < std::min(least.value(f_range.lo, G_range.lo), most.value(f_range.lo, G_range.lo)) * (1 - 1e-9);
+  }
+  EXPECT_GT(outside_ends, 0);
 }
 
 }  // namespace

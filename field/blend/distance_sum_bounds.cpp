@@ -1,0 +1,112 @@
+// What primitives by distance may change by: they are k(e) of the least scaled distance e, which moves by as much as
+// the place does over the radius.
+#include <algorithm>
+#include <cmath>
+
+#include "field/blend/steepest_slope.h"
+#include "field/blend/sum_bounds.h"
+#include "field/math/elementary.h"
+#include "field/skeleton/distance.h"
+#include "field/skeleton/radii.h"
+#include "field/skeleton/skeletons.h"
+
+namespace marrow {
+namespace {
+
+constexpr double inf = Box3::inf;
+
+// How far the unit vector from the nearest point of the skeleton turns over rho: level surfaces of e are those of
+// convex bodies, flat, round or conical, and curve no more than a ball of the distance, over the cosine of the cone's
+// slope. Not known for arcs, whose nearest point may jump.
+double turn(const SegmentSkeleton& s, double distance, double rho) {
+  const double slope = (s.radius_to - s.radius_from) / length(s.to - s.from);
+  return 2 * rho / (distance - rho) / std::sqrt(std::max(0.0, 1 - slope * slope));
+}
+double turn(const TriangleSkeleton& s, double distance, double rho) {
+  return s.radii[0] == s.radii[1] && s.radii[1] == s.radii[2] ? 2 * rho / (distance - rho) : inf;
+}
+double turn(const ArcSkeleton&, double, double) { return inf; }
+
+// |k'| where the scaled distance is off by `moved` at most from where the field is f: it rises to the steepest place of
+// the kernel and falls from there on. The compact kernel has none beyond its support, where only f = 0 is known.
+Interval steepness_near(const Profile& profile, const Kernel& kernel, double f, double moved) {
+  const int m = profile.degree();
+  const bool is_compact = kernel.family == KernelFamily::Compact;
+  const double size = is_compact ? kernel.shape : 1 / kernel.shape;
+  // (x / size)^2 from k; a relative 1e-9 of it or of 1 stands for the error of the sample.
+  const double ratio = std::min(1.0, f * profile.normalisation());
+  const double y = is_compact ? 1 - pow(ratio, 2.0 / m) : ratio > 0 ? pow(ratio, -2.0 / m) - 1 : inf;
+  const double near = std::max(0.0, size * std::sqrt(std::max(0.0, y - 1e-9 * (1 + y))) - moved);
+  const double far = f > 0 ? size * std::sqrt(y + 1e-9 * (1 + y)) + moved : inf;
+  const auto slope = [&](double x) {
+    if (!(is_compact ? x < size : x < inf)) return 0.0;
+    return std::fabs(2 * x * profile.at(x * x).slope) / profile.normalisation();
+  };
+  const double top = size / std::sqrt(is_compact ? m - 1.0 : m + 1.0), a = slope(near), b = slope(far);
+  const bool has_top = near * (1 - 1e-9) <= top && top <= far * (1 + 1e-9);
+  const double most = has_top ? steepest(profile, kernel) : std::max(a, b);
+  return {std::min(a, b) * (1 - 1e-9), most * (1 + 1e-9)};
+}
+
+// e = min d / radius changes by rho / radius at most, f = k(e), |S| = |k'(e)|.
+template <class Skeleton>
+SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, const Kernel& kernel) {
+  const SkeletonSample sample = distance_field<Derivatives::ScaleInvariant>(s, sum.center(), kernel);
+  const double f = sample.value, moved = sum.rho() / least_radius(s), distance = distance_to(s, sum.center());
+  const double turned = distance > sum.rho() ? turn(s, distance, sum.rho()) : inf;
+  // S between its least and largest length, turned by as much.
+  const auto give_S = [&](SumBounds::Between& b, double S_low, double S_high) {
+    b.S_by = S_high;
+    if (!(turned < 1 && length(sample.si_gradient) > 0)) return;
+    b.S = normalize(sample.si_gradient) * (0.5 * (S_low + S_high));
+    b.S_by = (0.5 * (S_high - S_low) + S_high * turned) * (1 + 1e-9);
+  };
+  if (kernel.family != KernelFamily::Inverse) {
+    const Profile profile(kernel, 0);
+    const double steep = steepest(profile, kernel) * (1 + 1e-9), by = steep * moved + 1e-10 * f;
+    SumBounds::Between b{.f = {std::max(0.0, f - by), f + by},
+                         .log_slope = f > by ? steep / (least_radius(s) * (f - by)) : inf};
+    const Interval lengths = steepness_near(profile, kernel, f, moved);
+    give_S(b, lengths.lo, lengths.hi);
+    return b;
+  }
+  const int n = kernel.degree;
+  const double e = std::isfinite(f) ? pow(f, -1.0 / (n - 1)) : 0, by = moved + 1e-10 * e;
+  const double near = e - by, far = e + by;
+  if (!(near > 0)) return {.f = {(1 - 1e-10) / integer_power(far, n - 1), inf}, .S_by = inf, .log_slope = inf};
+  const double S_high = (n - 1) * (1 + 1e-10) / integer_power(near, n);
+  SumBounds::Between b{.f = {(1 - 1e-10) / integer_power(far, n - 1), (1 + 1e-10) / integer_power(near, n - 1)},
+                       .S_by = S_high,
+                       .log_slope = (n - 1) * (1 + 1e-10) / (near * least_radius(s))};
+  give_S(b, (n - 1) * (1 - 1e-10) / integer_power(far, n), S_high);
+  return b;
+}
+
+}  // namespace
+
+void SumBounds::add_distances(const BlendField& blend) {
+  const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+  const auto& list = blend.distance_segments;
+  for (std::size_t i = 0; i < list.size();) {
+    // The largest of a strand counts; where several may be that, S is one of theirs.
+    Between all = distance_bounds(list.skeletons[i], *this, kernel);
+    const std::size_t first = i++;
+    for (; !list.strands.empty() && i < list.size() && list.strands[i] == list.strands[first]; ++i) {
+      const Between other = distance_bounds(list.skeletons[i], *this, kernel);
+      if (other.f.hi < all.f.lo) continue;
+      if (all.f.hi < other.f.lo) {
+        all = other;
+        continue;
+      }
+      all = {.f = max(all.f, other.f),
+             .S = (all.S + other.S) * 0.5,
+             .S_by = 0.5 * length(all.S - other.S) + std::max(all.S_by, other.S_by) * (1 + 1e-15),
+             .log_slope = std::max(all.log_slope, other.log_slope)};
+    }
+    add(all);
+  }
+  for (const auto& s : blend.distance_triangles.skeletons) add(distance_bounds(s, *this, kernel));
+  for (const auto& s : blend.distance_arcs.skeletons) add(distance_bounds(s, *this, kernel));
+}
+
+}  // namespace marrow
