@@ -15,7 +15,7 @@
 namespace marrow {
 
 inline constexpr int lanes = 16;
-inline constexpr int floats_per_group = 5 * lanes;  ///< x[16] y[16] z[16] weight[16] radius[16]
+inline constexpr int floats_per_group = 5 * lanes;  ///< x[16] y[16] z[16] share[16] radius[16]
 
 inline constexpr int tensor_floats = 48;  ///< 45 components of a tensor of degree 8; sums of f, f^2, f^2 with direction
 inline constexpr int most_strands = 512;  ///< that a block lists
@@ -35,7 +35,8 @@ struct StrandLevel {
   float far_bend[3] = {0, 0, 0};  ///< means over those strands: 1 / d^2, rho^2, rho n / d (kernels/strands.h)
 };
 
-/// One representation of the field in a block: f = sum w d^-m + polynomial, G = grad_S f likewise with w tau.
+/// One representation of the field in a block: f = sum w d^-m + polynomial, G = grad_S f likewise with w tau. Sources
+/// hold their radius tau and share = w / tau^m, which is of the size of 1.
 struct FieldLevel {
   const float* sources = nullptr;        ///< curve groups, then point groups; 64-byte aligned
   int curve_groups = 0;                  ///< of exponent m = degree

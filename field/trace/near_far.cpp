@@ -35,7 +35,7 @@ void add_nodes(const Piece& piece, int count, const Vec3d& center, double half, 
   const double scale = 1 / half;
   if (piece.is_point()) {
     const double radius = piece.radius * scale;
-    out.add((piece.from - center) * scale, integer_power(radius, degree - 1) * piece.factor, radius);
+    out.add((piece.from - center) * scale, piece.factor, radius);
     return;
   }
   const GaussNodes rule = gauss_legendre(count);
@@ -43,8 +43,7 @@ void add_nodes(const Piece& piece, int count, const Vec3d& center, double half, 
   for (std::size_t k = 0; k < rule.positions.size(); ++k) {
     const double s = rule.positions[k];
     const double radius = (piece.radius_from + (piece.radius_to - piece.radius_from) * s) * scale;
-    out.add((lerp(piece.from, piece.to, s) - center) * scale,
-            rule.weights[k] * unit * integer_power(radius, degree - 1), radius);
+    out.add((lerp(piece.from, piece.to, s) - center) * scale, rule.weights[k] * unit / radius, radius);
   }
 }
 

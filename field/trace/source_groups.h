@@ -8,22 +8,23 @@
 
 namespace marrow {
 
-/// Lanes without a source have weight 0 and stand far away.
+/// Lanes without a source have share 0 and stand far away. `share` is that of FieldLevel, or for far_moments() the
+/// field at the origin.
 struct alignas(64) SourceGroup {
-  float x[lanes], y[lanes], z[lanes], weight[lanes], radius[lanes];
+  float x[lanes], y[lanes], z[lanes], share[lanes], radius[lanes];
 };
 static_assert(sizeof(SourceGroup) == floats_per_group * sizeof(float));
 
 class SourceGroups {
  public:
-  void add(const Vec3d& at, double weight, double radius) {
+  void add(const Vec3d& at, double share, double radius) {
     const int lane = count_ % lanes;
     if (lane == 0) start_group();
     SourceGroup& g = groups_.back();
     g.x[lane] = static_cast<float>(at.x);
     g.y[lane] = static_cast<float>(at.y);
     g.z[lane] = static_cast<float>(at.z);
-    g.weight[lane] = static_cast<float>(weight);
+    g.share[lane] = static_cast<float>(share);
     g.radius[lane] = static_cast<float>(radius);
     ++count_;
   }
@@ -39,7 +40,7 @@ class SourceGroups {
     SourceGroup& g = groups_.emplace_back();
     for (int i = 0; i < lanes; ++i) {
       g.x[i] = g.y[i] = g.z[i] = 1e3F;
-      g.weight[i] = g.radius[i] = 0;
+      g.share[i] = g.radius[i] = 0;
     }
   }
   std::vector<SourceGroup> groups_;

@@ -115,6 +115,11 @@ void judge_free_way(const StressScene& scene, const Ray& ray, double end, bool c
     ++v.grazing;
     return;
   }
+  // Through the very point of a cone, where its radius is 0 and its field infinite.
+  if (std::isinf(excess) && radius < point_size(scene)) {
+    ++v.points;
+    return;
+  }
   ++(certified ? v.missed : v.lost);
   note(certified ? v.missed_rays : v.lost_rays, text(scene, ray, family, certified ? "missed" : "lost", excess));
 }

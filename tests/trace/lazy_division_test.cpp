@@ -113,6 +113,32 @@ TEST(LazyDivision, RadiiOfEightOrdersOfMagnitude) {
   EXPECT_LT((*made)->tile_count(), 5'000U);
 }
 
+// Beside a small ball the weight of a large one, as a power of its radius in the cells of the small one, is beyond
+// float.
+TEST(LazyDivision, HighDegreesBesideSmallRadii) {
+  for (const int degree : {8, 12, 20})
+    for (const double small : {1e-2, 1e-3, 1e-4}) {
+      BlendField blend;
+      blend.degree = degree;
+      blend.alpha = contact_alpha(degree);
+      blend.points.add({{0, 0, 0}, 1}, {});
+      blend.segments.add({{-1, 0, 0}, {1, 0, 0}, 0.8, 0.8}, {});
+      blend.points.add({{0, 1.6, 0}, small}, {});
+      auto made = BlendTracer::make(blend, {});
+      ASSERT_TRUE(made);
+      const Ray ray{{0, 1.6, 3}, UnitVec3::unchecked({0, 0, -1})};
+      std::optional<double> first;
+      for (std::size_t i = 0; i < (*made)->tile_count(); ++i) {
+        CellLog log;
+        const auto hit = (*made)->first_hit(i, ray, false, log);
+        if (hit && (!first || hit->t < *first)) first = hit->t;
+      }
+      ASSERT_TRUE(first) << degree << ", " << small;
+      EXPECT_NEAR(*first, 3 - small, 0.2 * small) << degree;
+      EXPECT_NEAR(corrected_value(blend, ray.at(*first)), 1, 1e-4) << degree;
+    }
+}
+
 TEST(LazyDivision, OfOneSegmentAnywhere) {
   for (const double size : {1e-4, 1.0, 1e4})
     for (const double away : {0.0, 1e3}) {

@@ -14,12 +14,12 @@ struct CubeSummer {
     V16 a[12] = {}, nearest{};
     for (int k = 0; k < groups; ++k, group += floats_per_group) {
       const V16 dx = p[0] - load(group), dy = p[1] - load(group + 16), dz = p[2] - load(group + 32);
-      const V16 weight = load(group + 48), tau = load(group + 64);
+      const V16 share = load(group + 48), tau = load(group + 64);
       const V16 d2 = dx * dx + dy * dy + dz * dz, inv = 1.0F / d2, inv_d = root_of(inv), q = radius * inv_d;
       // 1 / (1 - q), where no source comes into the ball, and at most 1 / (1 + q)
       const V16 both = 1.0F / larger(1.0F - q * q, splat(1e-3F)), stretch = (1.0F + q) * both,
                 shrink = larger(1.0F - q, V16{}) * both;
-      const V16 w0 = weight * inverse_power<Exponent>(inv, exponent), k1 = w0 * tau * inv_d, k2 = k1 * inv_d;
+      const V16 w0 = field_of<Exponent>(share, tau, inv, exponent), k1 = w0 * tau * inv_d, k2 = k1 * inv_d;
       const V16 raised = inverse_power<Exponent>(stretch * stretch, exponent);
       a[0] += w0 * raised;
       a[1] += k1 * (raised * stretch - 1.0F);
@@ -27,7 +27,7 @@ struct CubeSummer {
       a[3] += k2 * dy;
       a[4] += k2 * dz;
       a[5] += w0 * inverse_power<Exponent>(shrink * shrink, exponent);
-      nearest = larger(nearest, weight > 0.0F ? q : V16{});
+      nearest = larger(nearest, share > 0.0F ? q : V16{});
     }
     float s[16];
     sum_lanes(a, s);

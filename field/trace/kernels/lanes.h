@@ -57,6 +57,12 @@ inline V16 inverse_power(V16 inv, int exponent) {
   return power;
 }
 
+// share (tau / d)^m: the weight share tau^m alone could overflow beside a far smaller source.
+template <int Exponent>
+inline V16 field_of(V16 share, V16 tau, V16 inv, int exponent) {
+  return share * inverse_power<Exponent>(tau * tau * inv, exponent);
+}
+
 // Sums over 16 lanes of up to 16 accumulators at once, as a tree: halves, quarters, pairs, single lanes.
 inline void sum_lanes(const V16 (&a)[12], float (&sums)[16]) {
   V16 b[6], c[3], d[2];

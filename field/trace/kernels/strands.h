@@ -188,9 +188,9 @@ inline void add_strand_groups(const float* group, const float* direction, int gr
   for (int k = 0; k < groups; ++k, group += floats_per_group, direction += 3 * lanes) {
     const V16 dx = probe.p[0] - load(group), dy = probe.p[1] - load(group + 16), dz = probe.p[2] - load(group + 32);
     const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz);
-    const V16 weight = load(group + 48), w = weight * inverse_power<Exponent>(inv, exponent), w2 = w * inv;
+    const V16 share = load(group + 48), w = field_of<Exponent>(share, load(group + 64), inv, exponent), w2 = w * inv;
     const V16 u[3] = {load(direction), load(direction + 16), load(direction + 32)};
-    nearest = larger(nearest, weight > 0.0F ? inv : V16{});
+    nearest = larger(nearest, share > 0.0F ? inv : V16{});
     a[0] += w;
     for (int i = 0; i < 3; ++i) a[1 + i] += w * u[i];
     for (int i = 0; i < Slopes; ++i) {
@@ -240,7 +240,8 @@ inline void add_points(const FieldLevel& level, int degree, const StrandProbe<Sl
   const float m = static_cast<float>(degree - 1);
   for (int k = 0; k < level.point_groups; ++k, group += floats_per_group) {
     const V16 dx = probe.p[0] - load(group), dy = probe.p[1] - load(group + 16), dz = probe.p[2] - load(group + 32);
-    const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz), w = load(group + 48) * inverse_power<0>(inv, degree - 1);
+    const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz),
+              w = field_of<0>(load(group + 48), load(group + 64), inv, degree - 1);
     for (int i = 0; i < lanes; ++i) {
       if (!(w[i] > 0)) continue;
       Along<Slopes> f{w[i], {}};

@@ -17,9 +17,9 @@ inline void add_sums(const float* group, int groups, int exponent, const Probe& 
   V16 a[12] = {};
   for (int k = 0; k < groups; ++k, group += floats_per_group) {
     const V16 dx = probe.px - load(group), dy = probe.py - load(group + 16), dz = probe.pz - load(group + 32);
-    const V16 weight = load(group + 48), radius = load(group + 64);
+    const V16 share = load(group + 48), radius = load(group + 64);
     const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz);
-    const V16 w0 = weight * inverse_power<Exponent>(inv, exponent);
+    const V16 w0 = field_of<Exponent>(share, radius, inv, exponent);
     const V16 w2 = w0 * inv, k2 = w2 * radius, k4 = k2 * inv;
     const V16 along = dx * probe.ex + dy * probe.ey + dz * probe.ez, ka = k4 * along;
     a[0] += w0;
@@ -60,8 +60,8 @@ inline void add_full_sums(const float* group, int groups, int exponent, const fl
   for (int k = 0; k < groups; ++k, group += floats_per_group) {
     const V16 dx = p[0] - load(group), dy = p[1] - load(group + 16), dz = p[2] - load(group + 32);
     const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz);
-    const V16 w0 = load(group + 48) * inverse_power<Exponent>(inv, exponent);
-    const V16 w2 = w0 * inv, k2 = w2 * load(group + 64), k4 = k2 * inv;
+    const V16 radius = load(group + 64), w0 = field_of<Exponent>(load(group + 48), radius, inv, exponent);
+    const V16 w2 = w0 * inv, k2 = w2 * radius, k4 = k2 * inv;
     const V16 kx = k4 * dx, ky = k4 * dy, kz = k4 * dz;
     a[0] += w0;
     a[1] += w2 * dx;
@@ -107,7 +107,7 @@ inline void add_angle_sums(const float* group, int groups, int exponent, const P
   for (int k = 0; k < groups; ++k, group += floats_per_group) {
     const V16 dx = probe.px - load(group), dy = probe.py - load(group + 16), dz = probe.pz - load(group + 32);
     const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz);
-    const V16 w0 = load(group + 48) * inverse_power<Exponent>(inv, exponent), w2 = w0 * inv;
+    const V16 w0 = field_of<Exponent>(load(group + 48), load(group + 64), inv, exponent), w2 = w0 * inv;
     a[0] += w0;
     a[1] += w2 * (dx * probe.ex + dy * probe.ey + dz * probe.ez);
     a[2] += w2;
