@@ -2,8 +2,6 @@
 // every one judged. Prints what was counted, and exits 1 if a surface was missed or made up, or a start lies inside.
 // Scene numbers are seeds; the scenes share the rays and the lines evenly.
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <string>
 #include <vector>
@@ -12,6 +10,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include "tests/stress/number_options.h"
 #include "tests/stress/ray_families.h"
 #include "tests/stress/verdict.h"
 
@@ -115,22 +114,9 @@ bool judged(const Outcome& all) {
 }
 
 bool parse(int argc, char** argv, Job& job) {
-  struct Option {
-    const char* name;
-    std::uint64_t& value;
-  };
-  const Option options[] = {{"--rays", job.rays},     {"--lines", job.lines},   {"--first", job.first},
-                            {"--scenes", job.scenes}, {"--varied", job.varied}, {"--threads", job.threads}};
-  for (int i = 1; i + 1 < argc; i += 2) {
-    bool known = false;
-    for (const Option& o : options)
-      if (std::strcmp(argv[i], o.name) == 0) {
-        o.value = std::strtoull(argv[i + 1], nullptr, 10);
-        known = true;
-      }
-    if (!known) return false;
-  }
-  return argc % 2 == 1 && job.scenes > 0 && job.threads > 0;
+  const NumberOption options[] = {{"--rays", job.rays},     {"--lines", job.lines},   {"--first", job.first},
+                                  {"--scenes", job.scenes}, {"--varied", job.varied}, {"--threads", job.threads}};
+  return read_numbers(argc, argv, options) && job.scenes > 0 && job.threads > 0;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "field/blend/contact.h"
 #include "tests/trace/all_cells.h"
+#include "tests/trace/first_of_tiles.h"
 #include "tests/trace/stage.h"
 
 namespace marrow::test {
@@ -77,12 +78,7 @@ TEST(LazyDivision, ManySourcesAtOnePlace) {
     ASSERT_TRUE(made);
     const double radius = std::cbrt(static_cast<double>(count));
     const Ray ray{Vec3d{0.1, 0.2, 0.3} + Vec3d{0, 0, 4 * radius}, UnitVec3::unchecked({0, 0, -1})};
-    std::optional<double> first;
-    for (std::size_t i = 0; i < (*made)->tile_count(); ++i) {
-      CellLog log;
-      const auto hit = (*made)->first_hit(i, ray, false, log);
-      if (hit && (!first || hit->t < *first)) first = hit->t;
-    }
+    const auto first = first_hit(**made, ray);
     ASSERT_TRUE(first) << count;
     EXPECT_NEAR(*first, 3 * radius, 2e-5 * radius) << count;
     EXPECT_LT((*made)->statistics().cells, 20'000U);
@@ -99,12 +95,7 @@ TEST(LazyDivision, RadiiOfEightOrdersOfMagnitude) {
   ASSERT_TRUE(made);
   for (const PointSkeleton& p : blend.points.skeletons) {
     const Ray ray{p.at + Vec3d{0, 0, 3 * p.radius}, UnitVec3::unchecked({0, 0, -1})};
-    std::optional<double> first;
-    for (std::size_t i = 0; i < (*made)->tile_count(); ++i) {
-      CellLog log;
-      const auto hit = (*made)->first_hit(i, ray, false, log);
-      if (hit && (!first || hit->t < *first)) first = hit->t;
-    }
+    const auto first = first_hit(**made, ray);
     ASSERT_TRUE(first) << p.radius;
     // Others add a little to the field, so the surface is a little outside of the ball.
     EXPECT_NEAR(*first, 2 * p.radius, 0.1 * p.radius) << p.radius;
@@ -127,12 +118,7 @@ TEST(LazyDivision, HighDegreesBesideSmallRadii) {
       auto made = BlendTracer::make(blend, {});
       ASSERT_TRUE(made);
       const Ray ray{{0, 1.6, 3}, UnitVec3::unchecked({0, 0, -1})};
-      std::optional<double> first;
-      for (std::size_t i = 0; i < (*made)->tile_count(); ++i) {
-        CellLog log;
-        const auto hit = (*made)->first_hit(i, ray, false, log);
-        if (hit && (!first || hit->t < *first)) first = hit->t;
-      }
+      const auto first = first_hit(**made, ray);
       ASSERT_TRUE(first) << degree << ", " << small;
       EXPECT_NEAR(*first, 3 - small, 0.2 * small) << degree;
       EXPECT_NEAR(corrected_value(blend, ray.at(*first)), 1, 1e-4) << degree;

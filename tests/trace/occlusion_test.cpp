@@ -5,20 +5,11 @@
 #include <gtest/gtest.h>
 
 #include "field/trace/blend_tracer.h"
+#include "tests/trace/first_of_tiles.h"
 #include "tests/trace/random_rays.h"
 
 namespace marrow::test {
 namespace {
-
-std::optional<double> first_hit(const BlendTracer& tracer, const Ray& ray) {
-  std::optional<double> first;
-  for (std::size_t i = 0; i < tracer.tile_count(); ++i) {
-    CellLog log;
-    const auto hit = tracer.first_hit(i, ray, false, log);
-    if (hit && (!first || hit->t < *first)) first = hit->t;
-  }
-  return first;
-}
 
 bool is_hidden(const BlendTracer& tracer, Ray ray, double t_max) {
   ray.t_max = t_max;

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "field/trace/blend_tracer.h"
+#include "tests/trace/first_of_tiles.h"
 #include "tests/trace/random_rays.h"
 
 namespace marrow::test {
@@ -36,16 +37,6 @@ TEST(RaySpacing, IsNowhereLessThanInTheCube) {
 TEST(RaySpacing, CellsAreLargerWhereRaysComeOnce) {
   const RaySpacing often = seen_from({0, 0, 9}, false), once = seen_from({0, 0, 9}, true);
   EXPECT_GT(once.least_cell({0, 0, 0}, 0.1), often.least_cell({0, 0, 0}, 0.1));
-}
-
-std::optional<double> first_hit(const BlendTracer& tracer, const Ray& ray) {
-  std::optional<double> first;
-  for (std::size_t i = 0; i < tracer.tile_count(); ++i) {
-    CellLog log;
-    const auto hit = tracer.first_hit(i, ray, false, log);
-    if (hit && (!first || hit->t < *first)) first = hit->t;
-  }
-  return first;
 }
 
 // Grazing rays aside, on which hits may part where the field hardly exceeds 1.

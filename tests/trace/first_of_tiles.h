@@ -1,0 +1,21 @@
+// A tracer asked tile by tile, without a hierarchy.
+#pragma once
+
+#include <optional>
+
+#include "field/trace/blend_tracer.h"
+
+namespace marrow::test {
+
+/// t of the nearest hit of all tiles.
+inline std::optional<double> first_hit(const BlendTracer& tracer, const Ray& ray) {
+  std::optional<double> first;
+  for (std::size_t i = 0; i < tracer.tile_count(); ++i) {
+    CellLog log;
+    const auto hit = tracer.first_hit(i, ray, false, log);
+    if (hit && (!first || hit->t < *first)) first = hit->t;
+  }
+  return first;
+}
+
+}  // namespace marrow::test
