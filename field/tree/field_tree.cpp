@@ -206,16 +206,19 @@ class Restriction {
       if (term(c).lo <= most) kept_.push_back(in_place(c));
   }
 
-  // min(f_1, 2 - f_i): several i whose field is 0 count as one.
+  // min(f_1, 2 - f_i): several i whose field is 0 count as one, and as none where f_1 is at most 2. (That is so above
+  // any such cut: a chain of them keeps one.)
   void keep_rest(std::span<const Part> children) {
-    double most = children[0].value.hi;
-    for (const Part& c : children.subspan(1)) most = std::min(most, (Interval(2) - c.value).hi);
+    const double first = children[0].value.hi;
+    double most = first;
+    for (const Part& c : children.subspan(1)) most = std::min(most, complement(c.value).hi);
     if (children[0].record == Part::none) return;
     kept_.push_back(children[0]);
     bool has_zero = false;
     for (const Part& c : children.subspan(1)) {
       const bool is_zero = c.record == Part::none;
-      if ((Interval(2) - c.value).lo > most || (is_zero && has_zero)) continue;
+      const double least = complement(c.value).lo;
+      if (least >= first || least > most || (is_zero && has_zero)) continue;
       has_zero = has_zero || is_zero;
       kept_.push_back(in_place(c));
     }

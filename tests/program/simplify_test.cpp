@@ -114,6 +114,24 @@ TEST(Simplify, PlacementsOfPlacementsAreOne) {
   EXPECT_NEAR(value(*program, {2, 0, 0}), 1, 1e-12);
 }
 
+// A difference is at most 2, so that of a chain of cuts that are elsewhere one is left, even where the first field is
+// above 2.
+TEST(Simplify, CutsThatAreElsewhereAreDropped) {
+  FieldDescription field;
+  Sphere far_away;
+  far_away.center = {9, 0, 0};
+  field.root = general(field, Sum{}, {general(field, Sphere{}, {}), general(field, Sphere{}, {})});
+  for (int i = 0; i < 50; ++i) {
+    field.root = general(field, Difference{}, {field.root, general(field, far_away, {})});
+    field.root = general(field, SoftUnion{}, {field.root, general(field, far_away, {})});
+  }
+  const auto program = compile(field);
+  ASSERT_TRUE(program);
+  const FieldTree less = restricted(program->trees()[0], Box3{{-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}});
+  EXPECT_EQ(value(less, Vec3d{}), value(*program, Vec3d{}));
+  EXPECT_LE(less.records().size(), 6u);
+}
+
 TEST(Simplify, ASumOfPointsIsABlend) {
   Random random(72);
   FieldDescription field;

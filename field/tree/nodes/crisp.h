@@ -44,7 +44,25 @@ struct Intersection {
   }
 };
 
-/// The first child without the others: min(f_1, 2 - f_i), since 2 - f is 1 where f is.
+/// 2 - f, the field of what a child leaves: 1 where f is. Enclosures keep 2 exact where f is 0, so that what is at most
+/// 2 stays so: then cuts that are elsewhere can be dropped (Restriction), however many.
+template <Number X>
+X complement(const X& f) {
+  return X(2.0) - f;
+}
+template <>
+inline Interval complement(const Interval& f) {
+  const Interval rest = Interval(2) - f;
+  return {f.hi == 0 ? 2 : rest.lo, f.lo == 0 ? 2 : rest.hi};
+}
+template <std::size_t N>
+Jet<Interval, N> complement(const Jet<Interval, N>& f) {
+  Jet<Interval, N> rest = -f;
+  rest.value = complement(f.value);
+  return rest;
+}
+
+/// The first child without the others: min(f_1, 2 - f_i).
 struct Difference {
   static constexpr NodeInfo info{"difference", "Its first child without the others, with creases.", 1,
                                  any_number_of_children};
@@ -54,7 +72,7 @@ struct Difference {
   template <Number X>
   X value(std::span<const X> f) const {
     X rest = f[0];
-    for (const X& x : f.subspan(1)) rest = min(rest, X(2.0) - x);
+    for (const X& x : f.subspan(1)) rest = min(rest, complement(x));
     return max(rest, X(0.0));
   }
 };

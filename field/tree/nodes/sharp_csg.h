@@ -86,12 +86,12 @@ struct SharpDifference {
   template <Number X>
   X value(std::span<const X> f) const {
     X rest = f[0];
-    for (const X& x : f.subspan(1)) rest = SharpIntersection{smooth}.both(rest, max(X(2.0) - x, X(0.0)));
+    for (const X& x : f.subspan(1)) rest = SharpIntersection{smooth}.both(rest, max(complement(x), X(0.0)));
     return rest;
   }
   /// Whether a child with this field leaves all of the rest as it is.
   bool spares(const Interval& rest, const Interval& f) const {
-    const Interval wall = max(Interval(2) - f, Interval(0));
+    const Interval wall = max(complement(f), Interval(0));
     return smooth > 0 ? SharpCorner{1 + smooth, 1 + smooth}.is_first(rest, wall) : wall.lo >= rest.hi;
   }
 };

@@ -102,12 +102,12 @@ struct SoftDifference {
   X value(std::span<const X> f) const {
     const SoftIntersection common{2 - on_first, on_second};
     X rest = f[0];
-    for (const X& x : f.subspan(1)) rest = common.both(rest, max(X(2.0) - x, X(0.0)));
+    for (const X& x : f.subspan(1)) rest = common.both(rest, max(complement(x), X(0.0)));
     return rest;
   }
   /// Whether a child with this field leaves all of the rest as it is: 2 - f above (2 - on_first) times the rest.
   bool spares(const Interval& rest, const Interval& f) const {
-    return (Interval(2) - f).lo >= std::max(0.0, (Interval(2 - on_first) * rest).hi);
+    return complement(f).lo >= std::max(0.0, (Interval(2 - on_first) * rest).hi);
   }
 };
 
