@@ -41,8 +41,8 @@ std::string item_of(const std::string& list, std::size_t i) {
 
 bool Reader::spend_nodes(std::size_t count, const Place& at) {
   if (count <= nodes_left) return nodes_left -= count, true;
-  // Said once: everything after it would fail in the same way.
-  if (nodes_left > 0)
+  // Said once: everything after it would fail in the same way. (What is left may have been nothing before.)
+  if (!std::exchange(said_too_large_, true))
     error(at, "the fields grow too large here", "place fewer copies with `use:`; large skeletons belong in files");
   nodes_left = 0;
   return false;

@@ -63,6 +63,7 @@ class Reader {
 
  private:
   std::filesystem::path folder_;
+  bool said_too_large_ = false;
 };
 
 /// The name of item `i` of a list: `points` becomes `points[2]`.
