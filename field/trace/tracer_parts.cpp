@@ -16,18 +16,28 @@ struct BlendTracer::Stretch {
 
 namespace {
 
-// Where a line is between the planes of a slot along one axis: the numbers of walk.h.
-void clip_to_layer(int layer, float origin, float direction, float& begin, float& end) {
+// The layers of slots that a cell takes along an axis: one, or both of an octant.
+struct LayerSpan {
+  int first, end;
+};
+
+// Where a line is between the planes of some layers along one axis: the numbers of walk.h.
+void clip_to_layers(const LayerSpan& layers, float origin, float direction, float& begin, float& end) {
   constexpr float planes[5] = {-2, -0.5F, 0, 0.5F, 2};
   const float inverse = 1 / (std::fabs(direction) > 1e-20F ? direction : 1e-20F);
-  const float a = (planes[layer] - origin) * inverse, b = (planes[layer + 1] - origin) * inverse;
+  const float a = (planes[layers.first] - origin) * inverse, b = (planes[layers.end] - origin) * inverse;
   begin = std::max(begin, std::min(a, b));
   end = std::min(end, std::max(a, b));
 }
 
-bool clip_to_slot(int slot, const LocalRay& ray, float& begin, float& end) {
-  const int layer[3] = {slot & 3, slot >> 2 & 3, slot >> 4};
-  for (int k = 0; k < 3; ++k) clip_to_layer(layer[k], ray.origin[k], ray.direction[k], begin, end);
+// Where a walk over the slots of the cell would begin and end.
+bool clip_to_cell(const TileContent& content, int slot, const LocalRay& ray, float& begin, float& end) {
+  const bool whole_octant = content.large_cells >> path_of(slot).outer & 1;
+  for (int k = 0; k < 3; ++k) {
+    const int layer = slot >> (2 * k) & 3;
+    const LayerSpan layers = whole_octant ? LayerSpan{layer & 2, (layer & 2) + 2} : LayerSpan{layer, layer + 1};
+    clip_to_layers(layers, ray.origin[k], ray.direction[k], begin, end);
+  }
   return begin < end;
 }
 
@@ -56,15 +66,7 @@ std::optional<BlendTracer::Stretch> BlendTracer::stretch_in(const Tile& tile, in
   const RayInCube cube(ray, tile.place().center, tile.place().half);
   const float first = cube.to_local(whole->enter);
   float begin = first, end = cube.to_local(whole->exit);
-  if (tile.content().large_cells >> path_of(slot).outer & 1) {
-    Walk walk;
-    state_->kernels.walk(tile.content().slots_of_cell(slot), cube.local, begin, end, walk);
-    if (walk.count == 0) return {};
-    begin = walk.begin[0];
-    end = walk.end[walk.count - 1];
-  } else if (!clip_to_slot(slot, cube.local, begin, end)) {
-    return {};
-  }
+  if (!clip_to_cell(tile.content(), slot, cube.local, begin, end)) return {};
   return Stretch{begin <= first ? whole->enter : std::max(whole->enter, cube.to_world(begin)),
                  std::min(whole->exit, cube.to_world(end))};
 }

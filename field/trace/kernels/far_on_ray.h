@@ -8,24 +8,24 @@ constexpr int monomial_at(int a, int b, int c) {
 
 // The far polynomials by Horner's rule, unrolled by the compiler: the sum over c of the coefficients of x^A y^B z^c
 // with c <= Degree - A - B, ...
-template <int Degree, int A, int B, int C, class X>
-inline auto nested_in_z(const FieldLevel& level, const X& z) {
+template <int Degree, int A, int B, int C, class Z>
+inline auto nested_in_z(const FieldLevel& level, const Z& z) {
   const V4 here = load4(level.far + 4 * monomial_at(A, B, C));
   if constexpr (A + B + C == Degree) return here;
   else return nested_in_z<Degree, A, B, C + 1>(level, z) * z + here;
 }
 
 // ... then over b ...
-template <int Degree, int A, int B, class X>
-inline auto nested_in_y(const FieldLevel& level, const X& y, const X& z) {
+template <int Degree, int A, int B, class Y, class Z>
+inline auto nested_in_y(const FieldLevel& level, const Y& y, const Z& z) {
   const auto here = nested_in_z<Degree, A, B, 0>(level, z);
   if constexpr (A + B == Degree) return here;
   else return nested_in_y<Degree, A, B + 1>(level, y, z) * y + here;
 }
 
 // ... and over a.
-template <int Degree, int A = 0, class X>
-inline auto nested_polynomial(const FieldLevel& level, const X& x, const X& y, const X& z) {
+template <int Degree, int A = 0, class X, class Y, class Z>
+inline auto nested_polynomial(const FieldLevel& level, const X& x, const Y& y, const Z& z) {
   const auto here = nested_in_y<Degree, A, 0>(level, y, z);
   if constexpr (A == Degree) return here;
   else return nested_polynomial<Degree, A + 1>(level, x, y, z) * x + here;

@@ -12,7 +12,10 @@ inline float abs_of(float a) { return __builtin_fabsf(a); }
 inline float root_of(float a) { return __builtin_sqrtf(a); }
 
 // q^(-1/k) for q > 0 to some 1e-5: a guess from the exponent bits, then Newton's iteration y (1 + (1 - q y^k) / k).
-inline float inverse_root(float q, int k) {
+// Root 0 in the template means known only at run time.
+template <int Root>
+inline float inverse_root(float q, int root) {
+  const int k = Root > 0 ? Root : root;
   unsigned bits;
   __builtin_memcpy(&bits, &q, sizeof bits);
   constexpr unsigned one = 127U << 23;  // the bits of 1.0F
@@ -27,6 +30,7 @@ inline float inverse_root(float q, int k) {
   }
   return y;
 }
+inline float inverse_root(float q, int k) { return k == 3 ? inverse_root<3>(q, k) : inverse_root<0>(q, k); }
 
 inline V16 splat(float s) { return V16{} + s; }
 

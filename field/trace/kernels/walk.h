@@ -67,8 +67,11 @@ void walk(std::uint64_t slots, const LocalRay& ray, float t0, float t1, Walk& ou
   __builtin_memcpy(column_enter, &enter, sizeof column_enter);
   __builtin_memcpy(column_leave, &leave, sizeof column_leave);
   out.count = 0;
-  for (left &= slots; left != 0 && out.count < Walk::most; left &= left - 1) {
-    const int slot = __builtin_ctzll(left), column = slot & 15, layer = slot >> 4;
+  const bool backward = ray.direction[2] < 0;  // layer by layer as the ray comes, so that little is left to sort
+  for (left &= slots; left != 0 && out.count < Walk::most;) {
+    const int slot = backward ? 63 - __builtin_clzll(left) : __builtin_ctzll(left);
+    left &= ~(std::uint64_t{1} << slot);
+    const int column = slot & 15, layer = slot >> 4;
     insert(out, slot, max_of(column_enter[column], z_enter[layer]), min_of(column_leave[column], z_leave[layer]));
   }
 }
