@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "field/math/elementary.h"
 #include "tests/trace/first_of_tiles.h"
 #include "tests/trace/oracle.h"
 #include "tests/trace/random_rays.h"
@@ -73,6 +74,34 @@ TEST(OddRays, RaysThatBeginInASkeletonLeave) {
         }
     }
   EXPECT_GT(rays, 300);
+}
+
+// Parts of a cone near its thick end were bounded by the radius of its thin one, and errors of 10^9 stated.
+TEST(OddRays, SteepConesAreKnownAsWellAsOthers) {
+  Random random(303);
+  for (int scene = 0; scene < 6; ++scene) {
+    BlendField field = random_scene(random, {random.whole(3, 12), 0.7}, 1);
+    const double thick = random.between(0.3, 0.5), thin = thick * pow(10, random.between(-3, -1));
+    field.segments.add({random.vector(0.5), random.vector(0.5), thick, thin}, {});
+    field.segments.add({random.vector(0.5), random.vector(0.5), thin, thick}, {});
+    const auto tracer = std::move(*BlendTracer::make(field, large_cells()));
+    int hits = 0, lifted = 0;
+    for (int i = 0; i < 200; ++i) {
+      const Ray ray = chord(random);
+      std::optional<CellHit> first;
+      for (std::size_t tile = 0; tile < tracer->tile_count(); ++tile) {
+        CellLog log;
+        const auto hit = tracer->first_hit(tile, ray, false, log);
+        if (hit && (!first || hit->t < first->t)) first = hit;
+      }
+      if (!first) continue;
+      ++hits;
+      lifted += corrected_value(field, tracer->surface_at(*first->block, ray.at(first->t)).outside) < 1 - 1e-6;
+    }
+    EXPECT_GT(hits, 10);
+    EXPECT_EQ(lifted, hits);
+    EXPECT_LT(tracer->statistics().largest_error, 1e-4);
+  }
 }
 
 }  // namespace
