@@ -76,6 +76,32 @@ TEST(OddRays, RaysThatBeginInASkeletonLeave) {
   EXPECT_GT(rays, 300);
 }
 
+// Without cavity correction and at small angles |grad_S f| is large deep inside, beyond the end of the table, which
+// counted as outside: 10^5 samples were taken by the shortest steps.
+TEST(OddRays, RaysFromDeepInsideTakeFewSamples) {
+  Random random(304);
+  int rays = 0;
+  for (const int n : {3, 5, 8})
+    for (const double alpha : {0.5, 0.9}) {
+      const BlendField field = random_scene(random, {n, alpha, false}, 5);
+      const Oracle oracle(field);
+      const auto tracer = std::move(*BlendTracer::make(field, large_cells()));
+      for (const SegmentSkeleton& s : field.segments.skeletons)
+        for (int i = 0; i < 30; ++i) {
+          const Vec3d from = lerp(s.from, s.to, random.between(0, 1)) + random.vector(0.8 * s.radius_from);
+          if (oracle.value(from) < 1.01) continue;
+          const Ray ray{from, UnitVec3::unchecked(random_direction(random))};
+          ++rays;
+          for (std::size_t tile = 0; tile < tracer->tile_count(); ++tile) {
+            CellLog log;
+            tracer->first_hit(tile, ray, false, log);
+            EXPECT_LT(log.evaluations, 1000U) << "n " << n << " alpha " << alpha;
+          }
+        }
+    }
+  EXPECT_GT(rays, 200);
+}
+
 // Parts of a cone near its thick end were bounded by the radius of its thin one, and errors of 10^9 stated.
 TEST(OddRays, SteepConesAreKnownAsWellAsOthers) {
   Random random(303);
