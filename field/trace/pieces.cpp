@@ -75,13 +75,17 @@ std::vector<Piece> PieceCutter::cut(const BlendField& blend) const {
     const SegmentSkeleton& s = blend.segments.skeletons[i];
     Piece whole = segment_piece(s.from, s.to, s.radius_from, s.radius_to);
     whole.primitive = static_cast<std::uint32_t>(i);
-    // Steps of at most two radii, from the thick end on; equal where the radius is constant.
+    // Steps of at most two radii, from the thick end on; equal where the radius is constant. Within a step of a steep
+    // cone the radius halves at most: how near a piece the surface can be goes by its least radius, and how large its
+    // field is there, to the power n - 1, by its largest one.
+    const double slope = std::fabs(s.radius_to - s.radius_from) / whole.length;
+    const double in_radii = std::min(longest_in_radii, 0.5 / slope);
     const bool reversed = s.radius_to > s.radius_from;
     double done = 0;
     while (done < 1) {
       const double at = reversed ? 1 - done : done;
       const double radius = s.radius_from + (s.radius_to - s.radius_from) * at;
-      const double left = 1 - done, step_length = std::max(longest_in_radii * radius, 1e-5 * whole.radius);
+      const double left = 1 - done, step_length = std::max(in_radii * radius, 1e-5 * whole.radius);
       const double count = std::ceil(left * whole.length / step_length - 1e-9);
       const double step = count <= 1 ? left : left / count;
       const double next = count <= 1 ? 1 : done + step;

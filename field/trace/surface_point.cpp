@@ -35,12 +35,14 @@ double step_outside(const PointField& f, const Vec3d& normal, const Vec3d& bent,
   const double raise = 1 + 2 * (4e-6 + 2e-7 * (n + 1) / f.nearest);
   constexpr double enough = 2e-5;  // so that rays get away from where rounding leaves doubts
   constexpr double first = 8e-6;   // near a single skeleton a step of s distances lowers C by s (n - 1)
+  // Where no rule is certified, beside the point of a cone, the stated error may be infinite and no step would be best.
+  constexpr double most_error = 1e-3;
+  const double f_error = std::min(fine.f_error, most_error), g_error = std::min(fine.gradient_error, most_error);
   double best = 0, largest = -std::numeric_limits<double>::infinity();
   for (double step = first * f.nearest; step < 0.1 * f.nearest; step *= 2) {
     const double bend = f.second * n * (n + 1) * step * step;
-    const double x = f.f + slope * step + bend + 2 * fine.f_error, x_low = f.f + slope * step - bend - 2 * fine.f_error;
-    const double y =
-        length(vec(f.si_gradient) + bent * step) + f.third * (n + 1) * (n + 2) * step * step + 2 * fine.gradient_error;
+    const double x = f.f + slope * step + bend + 2 * f_error, x_low = f.f + slope * step - bend - 2 * f_error;
+    const double y = length(vec(f.si_gradient) + bent * step) + f.third * (n + 1) * (n + 2) * step * step + 2 * g_error;
     double margin = iso.views().size() > 1 ? margin_of_shares(f, normal, step, fine, iso, x * raise, y * raise, n)
                                            : iso.margin(x * raise, y * raise);
     if (iso.two_sided()) margin = std::min(margin, iso.margin(std::max(0.0, x_low / raise), y * raise));

@@ -113,7 +113,7 @@ std::optional<SurfaceHit> EmbreeSurfaces::hit_of(const PartHierarchy::Hit& found
   hit.t = plane_t;
   hit.position = ray.at(plane_t);
   hit.normal = dot(plane->normal, ray.direction) <= 0 ? plane->normal : -plane->normal;
-  hit.outside = lifted(hit.position, hit.normal);
+  hit.outside = lifted(hit.position, plane->point, hit.normal);
   hit.object = plane->object;
   hit.material = plane->material;
   return hit;

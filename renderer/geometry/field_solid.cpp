@@ -1,5 +1,6 @@
 #include "renderer/geometry/field_solid.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace marrow {
@@ -42,12 +43,13 @@ Box3 FieldSolid::to_world(const Box3& local) const {
   return box;
 }
 
+// Its end is raised by more than products and quotients round: the exact one is asked for in the world's t.
 FieldSolid::LocalRay FieldSolid::to_local(const Ray& ray) const {
   if (in_world_) return {ray, 1};
   const Vec3d direction = local_from_world_.vector(ray.direction);
   const double stretch = length(direction);
   return {{local_from_world_.point(ray.origin), UnitVec3::unchecked(direction / stretch), ray.t_min * stretch,
-           ray.t_max * stretch},
+           ray.t_max * (stretch * (1 + 0x1p-50))},
           stretch};
 }
 
@@ -63,8 +65,10 @@ std::optional<double> FieldSolid::traced(const Place& place, const Ray& ray, boo
          .outside_from = cell.outside_from / stretch,
          .begins_inside = cell.side == CellLog::Side::Inside};
   if (!found) return {};
+  const double t = std::max(ray.t_min, found->t / stretch);
+  if (!any && t > ray.t_max) return {};
   log.place = found->block;
-  return found->t / stretch;
+  return t;
 }
 
 std::optional<double> FieldSolid::hit(std::size_t element, const Ray& ray, bool any, ElementLog& log) const {

@@ -25,7 +25,8 @@ class MeshSolid final : public Solid {
   MaterialId material_;
 };
 
-/// A point moved off a flat surface to the normal's side, by more than rounding can have misplaced it.
-Vec3d lifted(const Vec3d& position, const UnitVec3& normal);
+/// A point of a ray near the plane through `in_plane`, moved into it and then to the normal's side, by more than
+/// rounding can have misplaced it there.
+Vec3d lifted(const Vec3d& position, const Vec3d& in_plane, const UnitVec3& normal);
 
 }  // namespace marrow

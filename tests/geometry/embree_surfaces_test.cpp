@@ -72,6 +72,16 @@ TEST(EmbreeSurfaces, EqualsBruteForce) {
   afar.report("seen from 1e5");
 }
 
+// To the last bit, although t is another one in the blend's own coordinates.
+void expect_limits_kept(const SolidScene& scene, Ray ray, double t) {
+  ray.t_max = t;
+  const auto there = scene.surfaces().first_hit(ray);
+  ASSERT_TRUE(there);
+  EXPECT_EQ(there->t, t);
+  ray.t_max = std::nextafter(t, 0.0);
+  EXPECT_FALSE(scene.surfaces().first_hit(ray));
+}
+
 // Non-uniform scale, shear and rotation stay above the blend; its rays are mapped.
 TEST(EmbreeSurfaces, EqualsBruteForceUnderTransforms) {
   Random random(102);
@@ -88,6 +98,7 @@ TEST(EmbreeSurfaces, EqualsBruteForceUnderTransforms) {
       all.check(scene, ray);
       const auto hit = scene.surfaces().first_hit(ray);
       if (!hit) continue;
+      expect_limits_kept(scene, ray, hit->t);
       // On the exact surface of the union, in world space, and with its normal.
       const FieldSample exact = scene.sample(hit->position);
       const double slope = length(exact.gradient);

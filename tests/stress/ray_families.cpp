@@ -16,9 +16,15 @@ Vec3d place(Random& random, const StressScene& s) { return s.center() + random.v
 
 Ray chord(Random& random, const StressScene& s) { return toward(eye(random, s), place(random, s)); }
 
-UnitVec3 axis(Random& random) {
+UnitVec3 axis(Random& random, const StressScene& s) {
   Vec3d direction{};
-  direction[static_cast<std::size_t>(random.whole(0, 2))] = random.between(0, 1) < 0.5 ? -1 : 1;
+  const auto along = static_cast<std::size_t>(random.whole(0, 2));
+  direction[along] = random.between(0, 1) < 0.5 ? -1 : 1;
+  if (!s.is_odd()) return UnitVec3::unchecked(direction);
+  // What rotations leave of 0, of either sign.
+  constexpr double almost_none[] = {0, -0.0, 1e-30, -1e-30, 1e-17, -1e-17, 1e-320};
+  for (const std::size_t across : {(along + 1) % 3, (along + 2) % 3})
+    direction[across] = almost_none[random.whole(0, 6)];
   return UnitVec3::unchecked(direction);
 }
 
@@ -34,10 +40,13 @@ Vec3d joint_of(Random& random, const BlendField& blend) {
   return random.between(0, 1) < 0.5 ? s.from : s.to;
 }
 
-// Along a segment, exactly in its axis, or through it across, or through a point along an axis.
+// Along a segment, exactly in its axis, or through it across, or through a point along an axis; of odd scenes also from
+// within it.
 Ray in_skeleton(Random& random, const StressScene& scene) {
   const auto& segments = scene.blend().segments.skeletons;
-  if (segments.empty()) return through(joint_of(random, scene.blend()), axis(random), scene);
+  if (scene.is_odd() && random.between(0, 1) < 0.4)
+    return {joint_of(random, scene.blend()), normalize(random_direction(random))};
+  if (segments.empty()) return through(joint_of(random, scene.blend()), axis(random, scene), scene);
   const auto i = static_cast<std::size_t>(random.whole(0, static_cast<int>(segments.size()) - 1));
   const UnitVec3 along = normalize(segments[i].to - segments[i].from);
   if (random.between(0, 1) < 0.6) return through(segments[i].from, random.between(0, 1) < 0.5 ? along : -along, scene);
@@ -72,7 +81,7 @@ Ray cell_boundary(Random& random, const StressScene& s) {
     const double at = kind < 0.8 ? random.whole(0, 16) / 16.0 : random.between(0, 1);
     target[i] = box.lower[i] + box.size()[i] * at;
   }
-  if (random.between(0, 1) < 0.6) return through(target, axis(random), s);
+  if (random.between(0, 1) < 0.6) return through(target, axis(random, s), s);
   // In the plane of a face
   Vec3d direction = random_direction(random);
   if (random.between(0, 1) < 0.5) direction[static_cast<std::size_t>(random.whole(0, 2))] = 0;
@@ -81,7 +90,7 @@ Ray cell_boundary(Random& random, const StressScene& s) {
 
 Ray focus(Random& random, const StressScene& s) {
   const Vec3d target = s.focus() + random.vector(s.focus_size());
-  return random.between(0, 1) < 0.3 ? through(target, axis(random), s) : toward(eye(random, s), target);
+  return random.between(0, 1) < 0.3 ? through(target, axis(random, s), s) : toward(eye(random, s), target);
 }
 
 Ray far(Random& random, const StressScene& s) {
@@ -143,7 +152,7 @@ Ray ray_of(Family family, Random& random, const StressScene& scene) {
     case Family::Axis:
       return through(
           random.between(0, 1) < 0.5 ? place(random, scene) : scene.focus() + random.vector(scene.focus_size()),
-          axis(random), scene);
+          axis(random, scene), scene);
     case Family::Joint:
       return toward(eye(random, scene), joint_of(random, scene.blend()));
     case Family::Skeleton:

@@ -10,6 +10,7 @@
 
 #include "field/math/elementary.h"
 #include "renderer/geometry/field_solid.h"
+#include "tests/stress/odd_drafts.h"
 #include "tests/trace/far_space.h"
 
 namespace marrow::test {
@@ -149,8 +150,8 @@ Draft angles(Random& random) { return {random_angled_scene(random, varied_settin
 Draft strands(Random& random) { return {random_stranded_scene(random, varied_setting(random), random.whole(2, 16))}; }
 
 using Draw = Draft (*)(Random&);
-constexpr std::array<Draw, kind_names.size()> draws{skeletons,  thin_feature, nearly_touching, ring,   loop,
-                                                    degenerate, ratios,       far_away,        angles, strands};
+constexpr std::array<Draw, single_angle_kinds + varied_kinds> draws{
+    skeletons, thin_feature, nearly_touching, ring, loop, degenerate, ratios, far_away, angles, strands};
 
 void scale(BlendField& blend, double by, const Vec3d& move) {
   for (auto& s : blend.points.skeletons) s = {s.at * by + move, s.radius * by};
@@ -158,14 +159,22 @@ void scale(BlendField& blend, double by, const Vec3d& move) {
     s = {s.from * by + move, s.to * by + move, s.radius_from * by, s.radius_to * by};
 }
 
+std::size_t kind_of(std::uint64_t number) {
+  if (number >= first_odd_scene) return single_angle_kinds + varied_kinds + number % odd_kind_count;
+  return number < first_varied_scene ? number % single_angle_kinds : single_angle_kinds + number % varied_kinds;
+}
+
+Draft draft_of(std::size_t kind, Random& random) {
+  return kind < draws.size() ? draws[kind](random) : Draft{odd_blend(kind - draws.size(), random)};
+}
+
 }  // namespace
 
 // Half of the scenes keep their size; the others are from 1e-4 to 1e4 of it, and some stand far from the origin.
 StressScene::StressScene(std::uint64_t number) {
   Random random(number, Random::Silent{});
-  constexpr std::size_t varied_kinds = draws.size() - single_angle_kinds;
-  kind_ = number < first_varied_scene ? number % single_angle_kinds : single_angle_kinds + number % varied_kinds;
-  Draft draft = draws[kind_](random);
+  kind_ = kind_of(number);
+  Draft draft = draft_of(kind_, random);
   const double factor = random.between(0, 1) < 0.5 ? 1 : pow(10, random.between(-4, 4));
   const double away = draft.away > 0 ? draft.away : random.between(0, 1) < 0.8 ? 0 : 30;
   const Vec3d move = random.vector(away * factor);

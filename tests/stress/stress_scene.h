@@ -12,12 +12,14 @@
 
 namespace marrow::test {
 
-inline constexpr std::array kind_names{"skeletons",  "thin feature", "nearly touching", "ring",   "loop",
-                                       "degenerate", "ratios",       "far away",        "angles", "strands"};
+inline constexpr std::array kind_names{
+    "skeletons", "thin feature", "nearly touching", "ring",  "loop",  "degenerate", "ratios",     "far away", "angles",
+    "strands",   "star",         "bundle",          "jumps", "graph", "lattice",    "high degree"};
 
-/// Of them, those with one angle come first. Scenes from this number on have varying angles.
-inline constexpr std::size_t single_angle_kinds = kind_names.size() - 2;
-inline constexpr std::uint64_t first_varied_scene = 1'000'000'000;
+/// Of them, those with one angle come first, then those of varying angles, in scenes from the first of these numbers
+/// on, then odd ones, as nobody would model them, from the second on.
+inline constexpr std::size_t single_angle_kinds = 8, varied_kinds = 2;
+inline constexpr std::uint64_t first_varied_scene = 1'000'000'000, first_odd_scene = 2'000'000'000;
 
 /// One blend, the surfaces that are tested, and the oracle that judges them.
 class StressScene {
@@ -29,11 +31,15 @@ class StressScene {
   const std::string& name() const { return name_; }
   std::size_t kind() const { return kind_; }  ///< index of kind_names
   bool has_varied_angle() const { return has_varied_angle(kind_); }
-  static bool has_varied_angle(std::size_t kind) { return kind >= single_angle_kinds; }
+  static bool has_varied_angle(std::size_t kind) {
+    return kind >= single_angle_kinds && kind < single_angle_kinds + varied_kinds;
+  }
+  bool is_odd() const { return is_odd(kind_); }
+  static bool is_odd(std::size_t kind) { return kind >= single_angle_kinds + varied_kinds; }
   /// A stretch inside counts as missed if the corrected field gets this far above 1 on it: the traced field may differ
   /// by 1e-5 of the radius, times the slope of some n - 1 over a radius. The angle that strands give is an estimate:
   /// its share of the range is within 1e-4 at 99 of 100 random places.
-  double grazing_excess() const { return kind_ + 1 == kind_names.size() ? 1e-4 : 1e-5; }
+  double grazing_excess() const { return kind_ + 1 == single_angle_kinds + varied_kinds ? 1e-4 : 1e-5; }
   const BlendField& blend() const { return blend_; }
   const EmbreeSurfaces& surfaces() const { return *surfaces_; }
   const Oracle& oracle() const { return *oracle_; }

@@ -115,8 +115,13 @@ void judge_free_way(const StressScene& scene, const Ray& ray, double end, bool c
     ++v.grazing;
     return;
   }
-  // Through the very point of a cone, where its radius is 0 and its field infinite.
-  if (std::isinf(excess) && radius < point_size(scene)) {
+  // Through the very point of a cone, where its radius is 0 and its field infinite, or beside it by a rounding, and not
+  // into anything behind it.
+  const double behind = *root + point_size(scene);
+  if (radius < point_size(scene) &&
+      (std::isinf(excess) || !(behind < end) ||
+       scene.oracle().largest_excess(ray, behind, std::min(end, behind + 4 * radius + point_size(scene))) <
+           scene.grazing_excess())) {
     ++v.points;
     return;
   }

@@ -158,7 +158,8 @@ double Oracle::largest_deficit(const Ray& ray, double t0, double t1) const {
   double largest = 0;
   const auto look = [&](double t) { largest = std::max(largest, 1 - value(ray.at(t))); };
   for (int i = 0; i <= even; ++i) look(t0 + (t1 - t0) * i / even);
-  for (double step = 1e-7 * skeleton_distance(ray.at(t0)); t0 + step < t1; step *= 1.2) look(t0 + step);
+  const double first = std::max(1e-7 * skeleton_distance(ray.at(t0)), 1e-12 * (t1 - t0));
+  for (double step = first; t0 + step < t1; step *= 1.2) look(t0 + step);
   return largest;
 }
 

@@ -95,7 +95,7 @@ class Runs {
       LocalRay local = ray_;
       int octant = 0;
       for (int k = 0; k < 3; ++k) {
-        const bool upper = (middle > plane_[k]) == (ray_.direction[k] >= 0);
+        const bool upper = (middle > plane_[k]) == (nonzero(ray_.direction[k]) > 0);
         octant |= upper ? 1 << k : 0;
         local.origin[k] = 2 * ray_.origin[k] - (upper ? 1.0F : -1.0F);
       }

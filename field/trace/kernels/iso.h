@@ -36,11 +36,10 @@ inline float nominal_margin_at(const IsoCurve::View& iso, float x, float y) {
   return curve_at(iso, u).value - turned_v(iso, x, y);
 }
 
-// Whether the field is above 1, by the curve itself; false where the table ends.
+// Whether the field is above 1, by the curve itself, and beyond the end of the table by its straight continuation: the
+// table ends where the curve meets the axis x = 0, falling, so that all beyond is inside and above that line.
 inline bool nominally_inside(const IsoCurve::View& iso, float x, float y) {
-  const float u = turned_u(iso, x, y);
-  if (!((u - iso.u_begin) * iso.inverse_step < static_cast<float>(iso.size - 1))) return false;
-  return x > iso.critical || curve_at(iso, u).value < turned_v(iso, x, y);
+  return x > iso.critical || curve_at(iso, turned_u(iso, x, y)).value < turned_v(iso, x, y);
 }
 
 // margin_at() for 16 points at once.
@@ -135,8 +134,13 @@ inline const IsoCurve::View& table_of_end(const BlockView& block, bool upper) {
 
 inline bool nominally_inside(const BlockView& block, float x, float y, float share) {
   if (x > block.iso.critical) return true;  // the first table is that of the least angle, which has the largest one
-  const float margin = nominal_margin_at(block, x, y, share);
-  return margin < 0 && margin > -infinity;
+  const IsoRows rows(block, share);
+  float margin = 0;
+  for (int i = 0; i < 4; ++i) {
+    const IsoCurve::View& iso = rows.first[i];
+    margin += rows.weight[i] * (curve_at(iso, turned_u(iso, x, y)).value - turned_v(iso, x, y));
+  }
+  return margin < 0;
 }
 
 // At x and y, with derivatives along a ray. `share_slope` is that of the share.

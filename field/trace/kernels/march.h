@@ -38,10 +38,19 @@ struct Marcher {
     if constexpr (Varied) angle().judge(p, probe, y, dy);
     else judge(p, y, dy);
     if (!(p.residual == p.residual)) p.residual = p.nominal = -1;  // on a source: infinite field
+    p.nominal = min_of(p.nominal, beyond_critical(p));
     p.sure = p.residual > 0;
     p.margin = p.sure ? p.residual : p.nominal;
     if (exits) mirror(p);
     return p;
+  }
+
+  // From the critical field on all is inside, whatever G is; there the table may have ended, or u and v may be so large
+  // that floats do not tell which side of the curve they are on. What the curve has to tell is never above this, since
+  // v grows at least as fast as f.
+  float beyond_critical(const Sample& p) const {
+    const float beyond = block.iso.critical - (p.s.f - level.f_error);
+    return beyond < 0 ? beyond : infinity;
   }
 
   void judge(Sample& p, float y, float dy) const {
