@@ -65,7 +65,8 @@ SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, cons
     const Profile profile(kernel, 0);
     const double steep = steepest(profile, kernel) * (1 + 1e-9), by = steep * moved + 1e-10 * f;
     SumBounds::Between b{.f = {std::max(0.0, f - by), f + by},
-                         .log_slope = f > by ? steep / (least_radius(s) * (f - by)) : inf};
+                         .log_slope = f > by ? steep / (least_radius(s) * (f - by)) : inf,
+                         .slopes = distance_slopes(s, sum.box(), kernel)};
     const Interval lengths = steepness_near(profile, kernel, f, moved);
     give_S(b, lengths.lo, lengths.hi);
     return b;
@@ -77,7 +78,8 @@ SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, cons
   const double S_high = (n - 1) * (1 + 1e-10) / integer_power(near, n);
   SumBounds::Between b{.f = {(1 - 1e-10) / integer_power(far, n - 1), (1 + 1e-10) / integer_power(near, n - 1)},
                        .S_by = S_high,
-                       .log_slope = (n - 1) * (1 + 1e-10) / (near * least_radius(s))};
+                       .log_slope = (n - 1) * (1 + 1e-10) / (near * least_radius(s)),
+                       .slopes = distance_slopes(s, sum.box(), kernel)};
   give_S(b, (n - 1) * (1 - 1e-10) / integer_power(far, n), S_high);
   return b;
 }
@@ -88,7 +90,8 @@ void SumBounds::add_distances(const BlendField& blend) {
   const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
   const auto& list = blend.distance_segments;
   for (std::size_t i = 0; i < list.size();) {
-    // The largest of a strand counts; where several may be that, S is one of theirs.
+    // The largest of a strand counts; where several may be that, S is one of theirs, and may jump unless all of them
+    // see the same end.
     Between all = distance_bounds(list.skeletons[i], *this, kernel);
     const std::size_t first = i++;
     for (; !list.strands.empty() && i < list.size() && list.strands[i] == list.strands[first]; ++i) {
@@ -101,7 +104,8 @@ void SumBounds::add_distances(const BlendField& blend) {
       all = {.f = max(all.f, other.f),
              .S = (all.S + other.S) * 0.5,
              .S_by = 0.5 * length(all.S - other.S) + std::max(all.S_by, other.S_by) * (1 + 1e-15),
-             .log_slope = std::max(all.log_slope, other.log_slope)};
+             .log_slope = std::max(all.log_slope, other.log_slope),
+             .slopes = all.slopes == other.slopes ? all.slopes : std::nullopt};
     }
     add(all);
   }

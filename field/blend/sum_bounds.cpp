@@ -99,7 +99,14 @@ void SumBounds::add(const SourceSums& sources) {
 void SumBounds::add(const Between& b) {
   const Interval& f = b.f;
   log_slope_ = std::max(log_slope_, b.log_slope);
-  has_slopes_ = false;
+  if (b.slopes) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      between_.gradient[i] += b.slopes->gradient[i];
+      for (std::size_t j = 0; j < 3; ++j) between_.J[i][j] += b.slopes->J[i][j];
+    }
+  } else {
+    has_slopes_ = false;
+  }
   low_ += std::max(0.0, f.lo);
   if (!(f.hi < inf)) {
     unbounded_ = true;
@@ -121,9 +128,9 @@ Interval SumBounds::f() const {
 }
 
 Vec3<Interval> SumBounds::gradient() const {
-  if (!has_slopes_ || unbounded_) return {Interval::everything(), Interval::everything(), Interval::everything()};
+  if (!has_slopes()) return {Interval::everything(), Interval::everything(), Interval::everything()};
   const double by = second_ * rho_ + slope_error_;
-  return {pad(gradient_.x, by), pad(gradient_.y, by), pad(gradient_.z, by)};
+  return Vec3<Interval>{pad(gradient_.x, by), pad(gradient_.y, by), pad(gradient_.z, by)} + between_.gradient;
 }
 
 Vec3<Interval> SumBounds::S() const {
@@ -137,8 +144,8 @@ Vec3<Interval> SumBounds::S() const {
 }
 
 Interval SumBounds::J(std::size_t i, std::size_t j) const {
-  if (!has_slopes_ || unbounded_) return Interval::everything();
-  return pad(J_.rows[i][j], S_second_ * rho_ + sample_error * std::fabs(J_.rows[i][j]) + J_error_);
+  if (!has_slopes()) return Interval::everything();
+  return pad(J_.rows[i][j], S_second_ * rho_ + sample_error * std::fabs(J_.rows[i][j]) + J_error_) + between_.J[i][j];
 }
 
 namespace {

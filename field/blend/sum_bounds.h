@@ -1,7 +1,10 @@
 // Bounds of the sums f and S = grad_S f of a blend and of their derivatives over a small box.
 #pragma once
 
+#include <optional>
+
 #include "field/blend/blend_field.h"
+#include "field/blend/distance_slopes.h"
 #include "field/blend/source_sums.h"
 #include "field/math/box3.h"
 #include "field/number/interval.h"
@@ -28,6 +31,7 @@ class SumBounds {
     Vec3d S{};         ///< its scale-invariant gradient is this
     double S_by = 0;   ///< up to a vector of this length
     double log_slope;  ///< of |grad ln f|
+    std::optional<PrimitiveSlopes> slopes{};
   };
   void add(const Between&);
   /// A primitive of which the largest first and second derivatives anywhere are known, up to a radius.
@@ -38,12 +42,15 @@ class SumBounds {
   /// Sources: the same from one remainder for all of them.
   void add(const SourceSums&);
 
+  const Box3& box() const { return box_; }
   const Vec3d& center() const { return center_; }
   /// Half the diagonal of the box.
   double rho() const { return rho_; }
   /// A skeleton is so near that f has no upper bound.
   bool unbounded() const { return unbounded_; }
   Interval f() const;
+  /// Whether gradient() and J() are bounded.
+  bool has_slopes() const { return has_slopes_ && !unbounded_; }
   Vec3<Interval> gradient() const;
   Vec3<Interval> S() const;
   /// d S_i / d p_j
@@ -67,6 +74,7 @@ class SumBounds {
   double J_error_ = 0;
   Vec3d gradient_{}, S_{};
   Matrix3 J_{};
+  PrimitiveSlopes between_{};
   bool unbounded_ = false, has_slopes_ = true;
 };
 
