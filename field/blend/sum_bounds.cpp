@@ -54,7 +54,9 @@ void SumBounds::add(const SkeletonSample& s, double distance, double radius, int
 
 // To second order, or, in boxes so large that it says less, to first.
 void SumBounds::add(const SkeletonSample& s, const Smooth& b) {
-  const double longest = b.steepest * b.radius, S_by = b.most_bent * b.radius * rho_ + compact_error * longest;
+  const double longest = b.steepest * b.radius, most_J = b.most_bent * b.radius;
+  const double J_by = std::min(b.J_changes + compact_error * most_J, most_J);
+  const double S_by = J_by * rho_ + compact_error * longest;
   log_slope_ = inf;
   low_ += std::max(0.0, s.value * (1 - compact_error) - b.steepest * rho_);
   f_ += s.value;
@@ -67,9 +69,11 @@ void SumBounds::add(const SkeletonSample& s, const Smooth& b) {
     error_ += b.steepest * rho_;
     slope_error_ += b.steepest;
   }
-  if (S_by < longest) S_ += s.si_gradient;
+  const bool is_near = S_by < longest;
+  if (is_near) S_ += s.si_gradient;
+  if (is_near && J_by < most_J) J_ += s.si_jacobian;
   S_error_ += std::min(longest, S_by) * (1 + 1e-9);
-  J_error_ += b.most_bent * b.radius;
+  J_error_ += is_near ? J_by : most_J;
 }
 
 // Within rho distances shrink by 1 - rho / nearest at most, and B3 and B4 hold with the sums of the sources.

@@ -37,6 +37,7 @@ class SumBounds {
   /// A primitive of which the largest first and second derivatives anywhere are known, up to a radius.
   struct Smooth {
     double steepest, most_bent, radius;
+    double J_changes;  ///< by which J may differ between the middle and any place of the box
   };
   void add(const SkeletonSample&, const Smooth&);
   /// Sources: the same from one remainder for all of them.
