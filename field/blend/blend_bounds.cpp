@@ -37,9 +37,9 @@ Vec3<Interval> gradient_of(const SumBounds& sum, const PartialBounds& by, const 
 
 }  // namespace
 
-BlendBounds blend_bounds(const BlendField& blend, const Box3& box) {
+BlendBounds blend_bounds(const BlendField& blend, const Box3& box, Wanted wanted) {
   if (!is_finite(box.center()) || !is_finite(box.size())) return {{0, inf}, unknown};
-  const SumBounds sum(blend, box);
+  const SumBounds sum(blend, box, wanted);
   return blend_bounds(blend, sum, alpha_bounds(blend, sum, box));
 }
 

@@ -23,7 +23,8 @@ Interval pad(double x, double by) { return {rounding::down(x - by), rounding::up
 SumBounds::SumBounds(const Box3& box)
     : box_(box), center_(box.center()), rho_(0.5 * length(box.size()) * (1 + 1e-15)) {}
 
-SumBounds::SumBounds(const BlendField& blend, const Box3& box) : SumBounds(box) {
+SumBounds::SumBounds(const BlendField& blend, const Box3& box, Wanted wanted) : SumBounds(box) {
+  has_slopes_ = wanted == Wanted::Slopes;
   if (blend.kernel == KernelFamily::Inverse) add_inverse(blend);
   if (blend.kernel == KernelFamily::Cauchy) add_cauchy(blend);
   if (blend.kernel == KernelFamily::Compact) add_compact(blend);

@@ -11,6 +11,9 @@
 
 namespace marrow {
 
+/// What is asked for: slopes of primitives by distance cost more than all else.
+enum class Wanted { Value, Slopes };
+
 /// Sums over primitives of an exact sample in the middle of the box and of what it may change by on the way to any
 /// point of the box, which follows from the least distance of each primitive.
 class SumBounds {
@@ -19,7 +22,7 @@ class SumBounds {
   static constexpr double compact_error = 1e-10;
 
   explicit SumBounds(const Box3&);
-  SumBounds(const BlendField&, const Box3&);
+  SumBounds(const BlendField&, const Box3&, Wanted = Wanted::Slopes);
 
   /// A primitive that is a positive sum of |p - q|^-m with all q at least `distance` away from the middle and radii up
   /// to `radius`. Its k-th derivatives are at most m (m+1) ... (m+k-1) / distance^k times itself, and within rho of the
@@ -43,7 +46,6 @@ class SumBounds {
   /// Sources: the same from one remainder for all of them.
   void add(const SourceSums&);
 
-  const Box3& box() const { return box_; }
   const Vec3d& center() const { return center_; }
   /// Half the diagonal of the box.
   double rho() const { return rho_; }
