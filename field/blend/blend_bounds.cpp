@@ -37,9 +37,9 @@ Vec3<Interval> gradient_of(const SumBounds& sum, const PartialBounds& by, const 
 
 }  // namespace
 
-BlendBounds blend_bounds(const BlendField& blend, const Box3& box) {
+BlendBounds blend_bounds(const BlendField& blend, const Box3& box, Wanted wanted) {
   if (!is_finite(box.center()) || !is_finite(box.size())) return {{0, inf}, unknown};
-  const SumBounds sum(blend, box);
+  const SumBounds sum(blend, box, wanted);
   return blend_bounds(blend, sum, alpha_bounds(blend, sum, box));
 }
 
@@ -54,7 +54,7 @@ BlendBounds blend_bounds(const BlendField& blend, const SumBounds& sum, const An
   const Vec3<Interval> S = sum.S();
   const Interval G = sqrt(square(S.x) + square(S.y) + square(S.z));
   BlendBounds b{.value = corrected(blend, alpha, f, G), .gradient = unknown};
-  if (alpha.lo < 0) return b;
+  if (alpha.lo < 0 || !sum.has_slopes()) return b;
   const Correction least({blend.kernel, blend.degree, blend.kernel_shape}, alpha.lo, blend.cavity, blend.projection);
   b.gradient = gradient_of(sum, partial_bounds(blend, least, alpha, b.value, f, G), S, G, angle.gradient);
   return b;

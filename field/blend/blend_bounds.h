@@ -16,7 +16,8 @@ struct BlendBounds {
 /// From one exact sample in the middle of the box and bounds of the derivatives of each primitive, which follow from
 /// its least distance: widths shrink with the square of the box for the sums, linearly for the corrected field.
 /// Boxes that reach a skeleton have no upper bound.
-BlendBounds blend_bounds(const BlendField&, const Box3&);
+/// For Wanted::Value alone the gradient may be everything.
+BlendBounds blend_bounds(const BlendField&, const Box3&, Wanted = Wanted::Slopes);
 /// The same from bounds of the sums and of the angle.
 BlendBounds blend_bounds(const BlendField&, const SumBounds&, const AngleBounds&);
 

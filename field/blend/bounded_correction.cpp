@@ -21,13 +21,6 @@ double exponent_of(const Kernel& kernel) { return (kernel.degree - sign_of(kerne
 
 }  // namespace
 
-// One of two equal unit skeletons: w = r^2 + 1/s^2 (Cauchy) or R^2 - r^2 (compact), psi = |k'(r)| / r = 2 p k / w.
-struct BoundedCorrection::Pair {
-  double w, psi;
-  double h;  // height over the middle
-  double B;  // w -+ h^2
-};
-
 struct BoundedCorrection::TwoSkeletons {
   Pair here, critical;
 };

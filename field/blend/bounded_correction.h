@@ -41,6 +41,16 @@ class BoundedCorrection {
     double f, G;
   };
   Place projected_from(double f, double G) const;
+  /// One of two equal unit skeletons that have (f, G) together, at a place of M.
+  struct Pair {
+    double w;    ///< r^2 + 1/s^2 (Cauchy) or R^2 - r^2 (compact)
+    double psi;  ///< |k'(r)| / r = 2 p k / w
+    double h;    ///< height over the middle
+    double B;    ///< w -+ h^2
+  };
+  Pair pair_at(double f, double G) const;
+  /// h of the critical point: rises with B, falls with alpha; h^2 <= B / n.
+  double critical_height(double B) const;
   /// C without the cavity branch; monotone in alpha.
   double projected(const Place&) const;
   CorrectionPartials partials(double f, double G) const;
@@ -49,18 +59,16 @@ class BoundedCorrection {
   bool solid_alone() const;
 
   const BoundedCurve& curve() const { return curve_; }
+  const Kernel& kernel() const { return kernel_; }
 
  private:
   struct Slopes {
     double value, df, dG, dalpha;
   };
   struct TwoSkeletons;
-  struct Pair;
 
   Slopes projected_slopes(double f, double G) const;
-  Pair pair_at(double f, double G) const;
   double steepness(double h, double B) const;
-  double critical_height(double B) const;
   std::optional<TwoSkeletons> behind_critical_point(double f, double G) const;
 
   Kernel kernel_;

@@ -55,6 +55,45 @@ double most_changed(const Profile& profile, const Kernel& kernel, double step) {
                                : 3 / (R * R) / profile.normalisation() * (step + std::sqrt(2 * R * step)) * (1 + 1e-9);
 }
 
+// How much of a skeleton, over a radius to the power of its dimension, may come into the support or leave it on a way
+// of rho: that whose distance differs from R radii by so much. Along a segment, d^2 = (R radius + by)^2 has the roots
+// (R slope c +- sqrt(c^2 - (1 - R^2 slope^2) h^2)) / (1 - R^2 slope^2) from the foot, c = R radius_f + by.
+double crossing(const PointSkeleton& s, const Vec3d& p, double rho, double R) {
+  return std::fabs(length(p - s.at) - R * s.radius) <= rho * (1 + 1e-9) + 1e-12 * s.radius ? 1 : 0;
+}
+double crossing(const SegmentSkeleton& s, const Vec3d& p, double rho, double R) {
+  const double along = length(s.to - s.from), slope = (s.radius_to - s.radius_from) / along;
+  const double open = 1 - square(R * slope);
+  if (!(open > 0)) return along / least_radius(s);
+  const Vec3d u = (s.to - s.from) / along, from_start = p - s.from;
+  const double foot = dot(from_start, u), h_squared = length_squared(from_start - u * foot);
+  const auto chord = [&](double by) {
+    const double c = R * (s.radius_from + slope * foot) + by, under = square(c) - open * h_squared;
+    if (!(c > 0 && under > 0)) return 0.0;
+    const auto place = [&](double side) {
+      return std::clamp(foot + (R * slope * c + side * std::sqrt(under)) / open, 0.0, along);
+    };
+    return place(1) - place(-1);
+  };
+  const double slack = rho * (1 + 1e-9) + 1e-9 * least_radius(s);
+  return std::max(0.0, chord(slack) - chord(-slack)) / least_radius(s);
+}
+// Not known; their samples have no J.
+double crossing(const auto&, const Vec3d&, double, double) { return inf; }
+
+// How far the second derivatives of the kernel change over a scaled step, of what either support `held`
+// and where `crossed` of it comes in or goes, at most: with w = 1 - y they are -a w^(h-1) + b w^(h-2) v v^T, a =
+// 2h/R^2, b = 4h(h-1)/R^4, h = m/2. Powers below 1 change by that power of the change of w, 2 step / R; w^0 by 1 at the
+// edge only.
+double bend_changes(const Profile& profile, const Kernel& kernel, double step, double held, double crossed) {
+  const double R = kernel.shape, h = 0.5 * profile.degree(), by = 2 * step / R;
+  if (h < 2 || crossed == inf) return inf;
+  const double a = 2 * h / (R * R), b = 4 * h * (h - 1) / (R * R * R * R);
+  const auto change = [&](double power) { return power >= 1 ? power * by : std::sqrt(by); };
+  const double at_edge = h > 2 ? held * change(h - 2) : crossed;
+  return (held * (a * change(h - 1) + 2 * b * R * step) + b * R * R * at_edge) / profile.normalisation() * (1 + 1e-9);
+}
+
 }  // namespace
 
 // f changes by rho sup |k'| times the share of the skeleton that the support can hold.
@@ -70,7 +109,9 @@ void SumBounds::add_compact(const BlendField& blend) {
       const double held = share(s, reach), least = least_radius(s), largest = largest_radius(s);
       const double per_length = steep * held / least * (1 + 1e-9);
       if (const double bend = held_bend(profile, kernel, s, held); bend < inf) {
-        add(sample, Smooth{per_length, bend / (least * least), largest});
+        const double crossed = crossing(s, center_, rho_, kernel.shape);
+        const double changes = bend_changes(profile, kernel, rho_ / least, share(s, reach + rho_), crossed) / least;
+        add(sample, Smooth{per_length, bend / (least * least), largest, changes});
         continue;
       }
       const double f = sample.value, by = per_length * rho_ + compact_error * f, longest = per_length * largest;
@@ -83,12 +124,13 @@ void SumBounds::add_compact(const BlendField& blend) {
            .log_slope = inf});
     }
   };
-  constexpr auto value = Derivatives::First;
+  constexpr auto second = Derivatives::Second;
+  constexpr auto first = Derivatives::First;
   const Vec3d& p = center_;
-  all(blend.points.skeletons, 0, [&](const PointSkeleton& s) { return point_field<value>(s, p, kernel); });
-  all(blend.segments.skeletons, 1, [&](const SegmentSkeleton& s) { return segment_field<value>(s, p, kernel); });
-  all(blend.triangles.skeletons, 2, [&](const TriangleSkeleton& s) { return triangle_field<value>(s, p, kernel); });
-  all(blend.arcs.skeletons, 1, [&](const ArcSkeleton& s) { return arc_field<value>(s, p, kernel); });
+  all(blend.points.skeletons, 0, [&](const PointSkeleton& s) { return point_field<second>(s, p, kernel); });
+  all(blend.segments.skeletons, 1, [&](const SegmentSkeleton& s) { return segment_field<second>(s, p, kernel); });
+  all(blend.triangles.skeletons, 2, [&](const TriangleSkeleton& s) { return triangle_field<first>(s, p, kernel); });
+  all(blend.arcs.skeletons, 1, [&](const ArcSkeleton& s) { return arc_field<first>(s, p, kernel); });
 }
 
 }  // namespace marrow

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "field/blend/bounded_partials.h"
+#include "field/blend/projection_angles.h"
 #include "field/kernel/inverse_family.h"
 #include "field/math/box3.h"
 
@@ -25,16 +27,6 @@ Interval chord_slope(const ReferenceCurve& curve, const Interval& a, const Inter
 // C is isotone and its clamp makes it no steeper than the curve: dC/df <= 1, dC/dG <= 1/g'(C).   [tracing 3.3]
 PartialBounds coarse_partials(const ReferenceCurve& curve, const Interval& value) {
   return {{0, 1}, {0, value.lo > 0 ? rounding::up(1 / curve.slope(value.lo), 8) : inf}};
-}
-
-// Sine and cosine of angles from 0 to pi/2.
-struct Angles {
-  Interval sine, cosine;
-};
-Angles angles_of(const Interval& alpha) {
-  if (alpha.lo == alpha.hi) return {Interval(sin(alpha.lo)), Interval(cos(alpha.lo))};
-  return {{rounding::down(sin(alpha.lo), 2), rounding::up(sin(alpha.hi), 2)},
-          {std::max(0.0, rounding::down(cos(alpha.hi), 2)), rounding::up(cos(alpha.lo), 2)}};
 }
 
 // The partial derivatives of the projection onto the chord. The share psi falls with the angle and rises with the slope
@@ -77,7 +69,7 @@ bool may_be_behind_critical_point(const Correction& c, const Interval& f, const 
 PartialBounds partial_bounds(const BlendField& blend, const Correction& c, const Interval& alpha, const Interval& value,
                              const Interval& f, const Interval& G) {
   if (c.is_sum()) return {{1, 1}, {0, 0}, {0, 0}};
-  if (blend.kernel != KernelFamily::Inverse) return {Interval::everything(), Interval::everything()};
+  if (c.bounded()) return bounded_partials(c, alpha, value, f, G);
   const ReferenceCurve curve(blend.degree);
   if (!(f.lo > 0 && G.lo > 0) || may_be_behind_critical_point(c, f, G))
     return c.cavity() ? coarse_partials(curve, value) : PartialBounds{Interval::everything(), Interval::everything()};

@@ -1,7 +1,9 @@
 // What primitives by distance may change by: they are k(e) of the least scaled distance e, which moves by as much as
 // the place does over the radius.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "field/blend/steepest_slope.h"
 #include "field/blend/sum_bounds.h"
@@ -82,31 +84,58 @@ SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, cons
   return b;
 }
 
+// The skeletons of one strand of which the largest field counts; where several may be that, S is one of theirs.
+struct Largest {
+  SumBounds::Between bounds;
+  std::array<std::size_t, 3> candidates{};
+  std::size_t count = 1;  // one more than candidates has room for: not known which
+
+  Largest(const SumBounds::Between& first, std::size_t index) : bounds(first), candidates{index} {}
+
+  void add(const SumBounds::Between& other, std::size_t index) {
+    if (other.f.hi < bounds.f.lo) return;
+    if (bounds.f.hi < other.f.lo) {
+      *this = {other, index};
+      return;
+    }
+    bounds = {.f = max(bounds.f, other.f),
+              .S = (bounds.S + other.S) * 0.5,
+              .S_by = 0.5 * length(bounds.S - other.S) + std::max(bounds.S_by, other.S_by) * (1 + 1e-15),
+              .log_slope = std::max(bounds.log_slope, other.log_slope)};
+    if (count < candidates.size()) candidates[count] = index;
+    count = std::min(count + 1, candidates.size() + 1);
+  }
+
+  // From one to the other S may jump, unless all of them see the same end.
+  std::optional<PrimitiveSlopes> slopes(const auto& skeletons, const Box3& box, const Kernel& kernel) const {
+    if (count > candidates.size()) return {};
+    const auto first = distance_slopes(skeletons[candidates[0]], box, kernel);
+    for (std::size_t i = 1; i < count && first; ++i)
+      if (distance_slopes(skeletons[candidates[i]], box, kernel) != first) return {};
+    return first;
+  }
+};
+
 }  // namespace
 
 void SumBounds::add_distances(const BlendField& blend) {
   const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
   const auto& list = blend.distance_segments;
   for (std::size_t i = 0; i < list.size();) {
-    // The largest of a strand counts; where several may be that, S is one of theirs.
-    Between all = distance_bounds(list.skeletons[i], *this, kernel);
+    Largest all(distance_bounds(list.skeletons[i], *this, kernel), i);
     const std::size_t first = i++;
-    for (; !list.strands.empty() && i < list.size() && list.strands[i] == list.strands[first]; ++i) {
-      const Between other = distance_bounds(list.skeletons[i], *this, kernel);
-      if (other.f.hi < all.f.lo) continue;
-      if (all.f.hi < other.f.lo) {
-        all = other;
-        continue;
-      }
-      all = {.f = max(all.f, other.f),
-             .S = (all.S + other.S) * 0.5,
-             .S_by = 0.5 * length(all.S - other.S) + std::max(all.S_by, other.S_by) * (1 + 1e-15),
-             .log_slope = std::max(all.log_slope, other.log_slope)};
-    }
-    add(all);
+    for (; !list.strands.empty() && i < list.size() && list.strands[i] == list.strands[first]; ++i)
+      all.add(distance_bounds(list.skeletons[i], *this, kernel), i);
+    if (has_slopes()) all.bounds.slopes = all.slopes(list.skeletons, box_, kernel);
+    add(all.bounds);
   }
-  for (const auto& s : blend.distance_triangles.skeletons) add(distance_bounds(s, *this, kernel));
-  for (const auto& s : blend.distance_arcs.skeletons) add(distance_bounds(s, *this, kernel));
+  const auto add_one = [&](const auto& s) {
+    Between bounds = distance_bounds(s, *this, kernel);
+    if (has_slopes()) bounds.slopes = distance_slopes(s, box_, kernel);
+    add(bounds);
+  };
+  for (const auto& s : blend.distance_triangles.skeletons) add_one(s);
+  for (const auto& s : blend.distance_arcs.skeletons) add_one(s);
 }
 
 }  // namespace marrow

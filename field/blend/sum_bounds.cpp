@@ -23,7 +23,8 @@ Interval pad(double x, double by) { return {rounding::down(x - by), rounding::up
 SumBounds::SumBounds(const Box3& box)
     : box_(box), center_(box.center()), rho_(0.5 * length(box.size()) * (1 + 1e-15)) {}
 
-SumBounds::SumBounds(const BlendField& blend, const Box3& box) : SumBounds(box) {
+SumBounds::SumBounds(const BlendField& blend, const Box3& box, Wanted wanted) : SumBounds(box) {
+  has_slopes_ = wanted == Wanted::Slopes;
   if (blend.kernel == KernelFamily::Inverse) add_inverse(blend);
   if (blend.kernel == KernelFamily::Cauchy) add_cauchy(blend);
   if (blend.kernel == KernelFamily::Compact) add_compact(blend);
@@ -54,7 +55,9 @@ void SumBounds::add(const SkeletonSample& s, double distance, double radius, int
 
 // To second order, or, in boxes so large that it says less, to first.
 void SumBounds::add(const SkeletonSample& s, const Smooth& b) {
-  const double longest = b.steepest * b.radius, S_by = b.most_bent * b.radius * rho_ + compact_error * longest;
+  const double longest = b.steepest * b.radius, most_J = b.most_bent * b.radius;
+  const double J_by = std::min(b.J_changes + compact_error * most_J, most_J);
+  const double S_by = J_by * rho_ + compact_error * longest;
   log_slope_ = inf;
   low_ += std::max(0.0, s.value * (1 - compact_error) - b.steepest * rho_);
   f_ += s.value;
@@ -67,9 +70,11 @@ void SumBounds::add(const SkeletonSample& s, const Smooth& b) {
     error_ += b.steepest * rho_;
     slope_error_ += b.steepest;
   }
-  if (S_by < longest) S_ += s.si_gradient;
+  const bool is_near = S_by < longest;
+  if (is_near) S_ += s.si_gradient;
+  if (is_near && J_by < most_J) J_ += s.si_jacobian;
   S_error_ += std::min(longest, S_by) * (1 + 1e-9);
-  J_error_ += b.most_bent * b.radius;
+  J_error_ += is_near ? J_by : most_J;
 }
 
 // Within rho distances shrink by 1 - rho / nearest at most, and B3 and B4 hold with the sums of the sources.
@@ -99,7 +104,14 @@ void SumBounds::add(const SourceSums& sources) {
 void SumBounds::add(const Between& b) {
   const Interval& f = b.f;
   log_slope_ = std::max(log_slope_, b.log_slope);
-  has_slopes_ = false;
+  if (b.slopes) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      between_.gradient[i] += b.slopes->gradient[i];
+      for (std::size_t j = 0; j < 3; ++j) between_.J[i][j] += b.slopes->J[i][j];
+    }
+  } else {
+    has_slopes_ = false;
+  }
   low_ += std::max(0.0, f.lo);
   if (!(f.hi < inf)) {
     unbounded_ = true;
@@ -121,9 +133,9 @@ Interval SumBounds::f() const {
 }
 
 Vec3<Interval> SumBounds::gradient() const {
-  if (!has_slopes_ || unbounded_) return {Interval::everything(), Interval::everything(), Interval::everything()};
+  if (!has_slopes()) return {Interval::everything(), Interval::everything(), Interval::everything()};
   const double by = second_ * rho_ + slope_error_;
-  return {pad(gradient_.x, by), pad(gradient_.y, by), pad(gradient_.z, by)};
+  return Vec3<Interval>{pad(gradient_.x, by), pad(gradient_.y, by), pad(gradient_.z, by)} + between_.gradient;
 }
 
 Vec3<Interval> SumBounds::S() const {
@@ -137,8 +149,8 @@ Vec3<Interval> SumBounds::S() const {
 }
 
 Interval SumBounds::J(std::size_t i, std::size_t j) const {
-  if (!has_slopes_ || unbounded_) return Interval::everything();
-  return pad(J_.rows[i][j], S_second_ * rho_ + sample_error * std::fabs(J_.rows[i][j]) + J_error_);
+  if (!has_slopes()) return Interval::everything();
+  return pad(J_.rows[i][j], S_second_ * rho_ + sample_error * std::fabs(J_.rows[i][j]) + J_error_) + between_.J[i][j];
 }
 
 namespace {

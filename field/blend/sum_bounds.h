@@ -1,12 +1,18 @@
 // Bounds of the sums f and S = grad_S f of a blend and of their derivatives over a small box.
 #pragma once
 
+#include <optional>
+
 #include "field/blend/blend_field.h"
+#include "field/blend/distance_slopes.h"
 #include "field/blend/source_sums.h"
 #include "field/math/box3.h"
 #include "field/number/interval.h"
 
 namespace marrow {
+
+/// What is asked for: slopes of primitives by distance cost more than all else.
+enum class Wanted { Value, Slopes };
 
 /// Sums over primitives of an exact sample in the middle of the box and of what it may change by on the way to any
 /// point of the box, which follows from the least distance of each primitive.
@@ -16,7 +22,7 @@ class SumBounds {
   static constexpr double compact_error = 1e-10;
 
   explicit SumBounds(const Box3&);
-  SumBounds(const BlendField&, const Box3&);
+  SumBounds(const BlendField&, const Box3&, Wanted = Wanted::Slopes);
 
   /// A primitive that is a positive sum of |p - q|^-m with all q at least `distance` away from the middle and radii up
   /// to `radius`. Its k-th derivatives are at most m (m+1) ... (m+k-1) / distance^k times itself, and within rho of the
@@ -28,11 +34,13 @@ class SumBounds {
     Vec3d S{};         ///< its scale-invariant gradient is this
     double S_by = 0;   ///< up to a vector of this length
     double log_slope;  ///< of |grad ln f|
+    std::optional<PrimitiveSlopes> slopes{};
   };
   void add(const Between&);
   /// A primitive of which the largest first and second derivatives anywhere are known, up to a radius.
   struct Smooth {
     double steepest, most_bent, radius;
+    double J_changes;  ///< by which J may differ between the middle and any place of the box
   };
   void add(const SkeletonSample&, const Smooth&);
   /// Sources: the same from one remainder for all of them.
@@ -44,6 +52,8 @@ class SumBounds {
   /// A skeleton is so near that f has no upper bound.
   bool unbounded() const { return unbounded_; }
   Interval f() const;
+  /// Whether gradient() and J() are bounded.
+  bool has_slopes() const { return has_slopes_ && !unbounded_; }
   Vec3<Interval> gradient() const;
   Vec3<Interval> S() const;
   /// d S_i / d p_j
@@ -67,6 +77,7 @@ class SumBounds {
   double J_error_ = 0;
   Vec3d gradient_{}, S_{};
   Matrix3 J_{};
+  PrimitiveSlopes between_{};
   bool unbounded_ = false, has_slopes_ = true;
 };
 

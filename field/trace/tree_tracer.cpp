@@ -134,7 +134,7 @@ std::optional<TreeHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, b
     CellSearch search(onward, any && members_.empty(), log);
     const auto hit = c.part != nullptr ? search.in(*c.part, t) : search.in(tree_, c.member, t, nullptr);
     if (!hit || hit->t > ray.t_max) return {};
-    if (members_.empty() || !is_covered(c.member, ray, hit->t)) return hit;
+    if (members_.empty() || !(is_covered(c.member, ray, hit->t) || is_joint(c.member, ray, hit->t))) return hit;
     onward.t_min = t.lo = std::max(hit->t, std::nextafter(t.lo, Box3::inf));
   }
   return {};
@@ -147,6 +147,23 @@ bool TreeTracer::is_covered(std::uint32_t member, const Ray& ray, double t) cons
   const double size = std::max(std::fabs(t), max_component(abs(ray.origin)));
   const Vec3d p = ray.at(std::max(ray.t_min, t - 64 * rounding::ulp * size));
   return largest_of_others(member, p) > 1 + sums_are_off;
+}
+
+// Whether the ray goes on from the member into another one, or the other way, through a common face: members are above
+// 1 before and behind, and bounds prove that between no more is outside than what sums are off.
+bool TreeTracer::is_joint(std::uint32_t member, const Ray& ray, double t) const {
+  constexpr double reach = 1e-11, rounding_of_sums = 1e-13, sums_are_off = 1e-10;
+  const double by = reach * std::max(std::fabs(t), max_component(abs(ray.origin)));
+  const auto largest_at = [&](const auto& p) { return max(value(tree_, p, member), largest_of_others(member, p)); };
+  if (!(t - by > ray.t_min)) return false;
+  if (!(largest_at(ray.at(t - by)) > 1 + rounding_of_sums)) return false;
+  if (!(largest_at(ray.at(t + by)) > 1 + rounding_of_sums)) return false;
+  const Interval along{t - by, t + by};
+  const Vec3d& o = ray.origin;
+  const Vec3d& d = ray.direction;
+  return largest_at(Vec3<Interval>{Interval(o.x) + along * Interval(d.x), Interval(o.y) + along * Interval(d.y),
+                                   Interval(o.z) + along * Interval(d.z)})
+             .lo > 1 - sums_are_off;
 }
 
 // Of those that can be 1 at p, a point.

@@ -62,6 +62,7 @@ class TreeTracer {
   void divide(const Member&);
   std::optional<Vec3d> outside_along(const Cell&, const Vec3d& position, const Vec3d& direction, double likely) const;
   bool is_covered(std::uint32_t member, const Ray&, double t) const;
+  bool is_joint(std::uint32_t member, const Ray&, double t) const;
   template <Number X>
   X largest_of_others(std::uint32_t member, const Vec3<X>& p) const;
   template <class Use>

@@ -30,7 +30,7 @@ HessianJet blend_value(const BlendField&, const Vec3<HessianJet>&);
 inline Box3 box_of(const Vec3<Interval>& p) { return {{p.x.lo, p.y.lo, p.z.lo}, {p.x.hi, p.y.hi, p.z.hi}}; }
 
 inline Interval blend_value(const BlendField& blend, const Vec3<Interval>& p) {
-  return blend_bounds(blend, box_of(p)).value;
+  return blend_bounds(blend, box_of(p), Wanted::Value).value;
 }
 
 template <std::size_t N>
@@ -48,7 +48,9 @@ Jet<double, N> blend_value(const LocalBlend& blend, const Vec3<Jet<double, N>>& 
   return composed(s.value, s.gradient, p);
 }
 
-inline Interval blend_value(const LocalBlend& blend, const Vec3<Interval>& p) { return blend.bounds(box_of(p)).value; }
+inline Interval blend_value(const LocalBlend& blend, const Vec3<Interval>& p) {
+  return blend.bounds(box_of(p), Wanted::Value).value;
+}
 
 template <std::size_t N>
 Jet<Interval, N> blend_value(const LocalBlend& blend, const Vec3<Jet<Interval, N>>& p) {

@@ -169,6 +169,33 @@ TEST(TreeTracer, DecidesRaysAcrossACut) {
   EXPECT_LT(hits, rays);
 }
 
+// Two boxes with a face in common, or a hair between them: from inside one leaves only where there is an outside.
+TEST(TreeTracer, GoesThroughACommonFaceButNotAcrossAGap) {
+  Random random(44);
+  for (const double gap : {0.0, 1e-16, 1e-6}) {
+    FieldDescription field;
+    const auto box = [&](double center, double size) {
+      const Box node{.center = {center, 0, 0}, .size = {size, 2, 2}, .potential = {}};
+      return field.add({.what = GeneralNode{.node = boxed(node), .of = {}, .material = {}}, .where = {}});
+    };
+    const FieldNodeId left = box(0, 2), right = box(1.75 + gap, 1.5);
+    field.root = field.add({.what = Union{{left, right}}, .where = {}});
+    const auto program = compile(field);
+    ASSERT_TRUE(program) << program.why()[0].message;
+    const auto tracer = TreeTracer::make(program->trees()[0]);
+    ASSERT_TRUE(tracer) << tracer.why()[0].message;
+    for (int i = 0; i < 60; ++i) {
+      const Vec3d from{0.3, random.between(-0.9, 0.9), random.between(-0.9, 0.9)};
+      const Vec3d to{2.4, random.between(-0.9, 0.9), random.between(-0.9, 0.9)};
+      const Ray ray{.origin = from, .direction = normalize(to - from)};
+      const CrossingSearch found = traced(*tracer, ray);
+      ASSERT_TRUE(found.t) << "gap " << gap;
+      if (gap > 1e-15) EXPECT_NEAR(ray.at(*found.t).x, 1, 1e-12);
+      else EXPECT_GT(ray.at(*found.t).x, 2.3);
+    }
+  }
+}
+
 TEST(TreeTracer, SpawnedPointsLieOutside) {
   Random random(43);
   int hits = 0;

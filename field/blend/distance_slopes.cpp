@@ -1,0 +1,172 @@
+#include "field/blend/distance_slopes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "field/kernel/profile.h"
+#include "field/skeleton/corners.h"
+
+namespace marrow {
+namespace {
+
+using Span = Vec3<Interval>;
+using Rows = std::array<Span, 3>;
+
+Span span_of(const Box3& box, const Vec3d& from) {
+  Span v;
+  for (std::size_t i = 0; i < 3; ++i) v[i] = Interval(box.lower[i], box.upper[i]) - Interval(from[i]);
+  return v;
+}
+Interval along(const Span& v, const Vec3d& u) { return v.x * u.x + v.y * u.y + v.z * u.z; }
+Span times(const Vec3d& u, const Interval& t) { return {t * u.x, t * u.y, t * u.z}; }
+Interval squared_length(const Span& v) { return square(v.x) + square(v.y) + square(v.z); }
+
+constexpr Rows identity{Span{1, 0, 0}, Span{0, 1, 0}, Span{0, 0, 1}};
+
+// A place q that may be the nearest one, seen from the points of a box.
+struct Place {
+  Span to_point;  // p - q
+  Interval radius;
+  Rows turns;    // the Jacobian of p - q, less (p - q) by that of ln radius
+  bool is_real;  // for every point a place of the skeleton, though it may not be the nearest one
+
+  Interval scaled_squared() const { return squared_length(to_point) / square(radius); }
+};
+
+// The few places of one skeleton.
+class Places {
+ public:
+  void add(const Place& p) { all_[count_++] = p; }
+  // A place is out where another is nearer all over the box.
+  std::optional<PrimitiveSlopes> slopes(const Kernel&) const;
+
+ private:
+  std::array<Place, 10> all_;
+  std::size_t count_ = 0;
+};
+
+Interval padded(double a, double b) {
+  const Interval x{std::min(a, b), std::max(a, b)};
+  return {x.lo - 1e-12 * std::fabs(x.lo), x.hi + 1e-12 * std::fabs(x.hi)};
+}
+
+// All derivatives of the kernels by y = e^2 are monotone. As e is stationary at q, grad y = 2 (p - q) / radius^2;
+// S = 2 k'(y) (p - q) / radius.
+std::optional<PrimitiveSlopes> slopes_from(const Place& q, const Interval& y, const Profile& profile) {
+  const ProfileSample near = profile.at(y.lo), far = profile.at(y.hi);
+  if (!std::isfinite(near.curvature)) return {};
+  const Interval over = Interval(1 / profile.normalisation()) / q.radius;
+  const Interval slope = 2 * padded(near.slope, far.slope) * over;
+  const Interval bend = 4 * padded(near.curvature, far.curvature) * over / square(q.radius);
+  const Span& v = q.to_point;
+  PrimitiveSlopes s;
+  for (std::size_t i = 0; i < 3; ++i) {
+    s.gradient[i] = slope / q.radius * v[i];
+    for (std::size_t j = 0; j < 3; ++j)
+      s.J[i][j] = bend * (i == j ? square(v[i]) : v[i] * v[j]) + slope * q.turns[i][j];
+  }
+  return s;
+}
+
+PrimitiveSlopes hull(const PrimitiveSlopes& a, const PrimitiveSlopes& b) {
+  PrimitiveSlopes both;
+  for (std::size_t i = 0; i < 3; ++i) {
+    both.gradient[i] = hull(a.gradient[i], b.gradient[i]);
+    for (std::size_t j = 0; j < 3; ++j) both.J[i][j] = hull(a.J[i][j], b.J[i][j]);
+  }
+  return both;
+}
+
+std::optional<PrimitiveSlopes> Places::slopes(const Kernel& kernel) const {
+  const Profile profile(kernel, 0);
+  double nearest = rounding::inf;
+  for (std::size_t i = 0; i < count_; ++i)
+    if (all_[i].is_real) nearest = std::min(nearest, all_[i].scaled_squared().hi);
+  std::optional<PrimitiveSlopes> sum;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Interval y = all_[i].scaled_squared();
+    if (y.lo > nearest) continue;
+    if (!(all_[i].radius.lo > 0) || (kernel.family == KernelFamily::Inverse && !(y.lo > 0))) return {};
+    const auto own = slopes_from(all_[i], y, profile);
+    if (!own) return {};
+    sum = sum ? hull(*sum, *own) : *own;
+  }
+  return sum;
+}
+
+// As nearest_of() in distance_field.cpp: the place stands at t = foot + slope h^2 / radius_f along the line, which
+// moves by grad t = u + slope (2 across - slope h^2 / radius_f u) / radius_f. Where the radius at the foot may vanish
+// it has no bounds.
+bool add_places(const SegmentSkeleton& s, const Box3& box, Places& places) {
+  const double length = marrow::length(s.to - s.from), slope = (s.radius_to - s.radius_from) / length;
+  if (!(length > 0)) return false;
+  const Vec3d u = (s.to - s.from) / length;
+  const Span from_start = span_of(box, s.from);
+  const Interval foot = along(from_start, u), foot_radius = s.radius_from + slope * foot;
+  if (!(foot_radius.lo > 0)) return false;
+  const Span across = from_start - times(u, foot);
+  const Interval lean = slope * squared_length(across) / foot_radius, t = foot + lean;
+  const double slack = 1e-12 * length;
+  const bool may_be_start = t.lo<slack, may_be_end = t.hi> length - slack;
+  if (t.hi > -slack && t.lo < length + slack) {
+    Place inside{across - times(u, lean), s.radius_from + slope * t, identity, !may_be_start && !may_be_end};
+    const Span moves = times(u, 1 - slope * lean / foot_radius) + across * (2 * slope / foot_radius);
+    const Interval wider = slope / inside.radius;
+    for (std::size_t i = 0; i < 3; ++i) inside.turns[i] -= moves * (u[i] + wider * inside.to_point[i]);
+    places.add(inside);
+  }
+  if (may_be_start) places.add({from_start, s.radius_from, identity, true});
+  if (may_be_end) places.add({span_of(box, s.to), s.radius_to, identity, true});
+  return true;
+}
+
+// In the plane of a triangle: q = foot + rise height^2 / radius_f. Nothing where the place has no bounds.
+struct InPlane {
+  Place place;
+  bool may_be_inside;
+};
+std::optional<InPlane> place_in_plane(const TriangleSkeleton& s, const Box3& box) {
+  const Corners corners(s);
+  const auto& dual = corners.dual;
+  const Vec3d rise = dual[0] * (s.radii[1] - s.radii[0]) + dual[1] * (s.radii[2] - s.radii[0]);
+  const Vec3d n = corners.normal / std::sqrt(corners.area2);
+  const Span from_corner = span_of(box, s.vertices[0]);
+  const Interval height = along(from_corner, n);
+  const Span over = times(n, height), foot = from_corner - over;
+  const Interval foot_radius = s.radii[0] + along(foot, rise);
+  if (!(foot_radius.lo > 0)) return {};
+  const Interval lean = square(height) / foot_radius;
+  const Span beside = times(rise, lean), q = foot + beside;
+  const Interval first = along(q, dual[0]), second = along(q, dual[1]), both = first + second;
+  constexpr double slack = 1e-12;
+  const bool is_inside = first.lo > slack && second.lo > slack && both.hi < 1 - slack;
+  const bool may_be_inside = first.hi > -slack && second.hi > -slack && both.lo < 1 + slack;
+  InPlane in{{over - beside, s.radii[0] + along(q, rise), {}, is_inside}, may_be_inside};
+  // foot and radius_f do not move with the height, beside does: by the chain rule; rise lies in the plane
+  const Span moves = times(n, 2 * height / foot_radius) - times(rise, lean / foot_radius);
+  const Span widens = times(rise, 1) + moves * Interval(length_squared(rise));
+  for (std::size_t i = 0; i < 3; ++i)
+    in.place.turns[i] = times(n, n[i]) - moves * Interval(rise[i]) - widens * (in.place.to_point[i] / in.place.radius);
+  return in;
+}
+
+}  // namespace
+
+std::optional<PrimitiveSlopes> distance_slopes(const SegmentSkeleton& s, const Box3& box, const Kernel& kernel) {
+  Places places;
+  return add_places(s, box, places) ? places.slopes(kernel) : std::nullopt;
+}
+
+std::optional<PrimitiveSlopes> distance_slopes(const TriangleSkeleton& s, const Box3& box, const Kernel& kernel) {
+  const auto plane = place_in_plane(s, box);
+  if (!plane) return {};
+  Places places;
+  if (plane->may_be_inside) places.add(plane->place);
+  for (std::size_t i = 0; i < 3 && !(plane->may_be_inside && plane->place.is_real); ++i) {
+    const std::size_t j = (i + 1) % 3;
+    if (!add_places({s.vertices[i], s.vertices[j], s.radii[i], s.radii[j]}, box, places)) return {};
+  }
+  return places.slopes(kernel);
+}
+
+}  // namespace marrow
