@@ -72,16 +72,22 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
     for (int octant = 0; octant < 8; ++octant)
       if (may_hold(context, coarse.level, octant_center({0, 0, 0}, 1, octant), 0.5)) octants_ |= 1U << octant;
   };
+  // Nothing is kept of a cell that turns out to be empty, as half of them do where strands are thin.
   if (!have_recipes(context)) {
     find_octants(coarse());
-    return;
+  } else if (BlockArena::bytes_of_all() < context.kept_bytes) {
+    thread_local LevelBuffer scratch;
+    const BlockLevel made = coarse_level(context, cell, in(scratch));
+    find_octants(made);
+    if (octants_ != 0)
+      coarse_.whole.get([&] { return std::make_unique<const BlockLevel>(copy_of(made, in(context.arena))); });
+  } else {
+    std::vector<PieceRule> rules;
+    const BlockLevel& made = coarse_cache().get(
+        serial_, [&](LevelBuffer& buffer) { return coarse_level(context, cell, in(buffer), &rules); });
+    find_octants(made);
+    if (octants_ != 0) keep_recipe(coarse_, made, rules);
   }
-  // Nothing is kept of a cell that turns out to be empty, as half of them do where strands are thin.
-  std::vector<PieceRule> rules;
-  const BlockLevel& made =
-      coarse_cache().get(serial_, [&](LevelBuffer& buffer) { return coarse_level(context, cell, in(buffer), &rules); });
-  find_octants(made);
-  if (octants_ != 0) keep(coarse_, made, rules);
 }
 
 // Whoever asks first finds the same.
@@ -131,17 +137,13 @@ BlockLevel Block::made_again(const Stored& stored, const Make& make, LevelBuffer
   if (!have_recipes(context_)) return make(in(buffer), nullptr);
   std::vector<PieceRule> rules;
   const BlockLevel level = make(in(buffer), &rules);
-  keep(stored, level, rules);
+  keep_recipe(stored, level, rules);
   return level;
 }
 
-void Block::keep(const Stored& stored, const BlockLevel& level, std::span<const PieceRule> rules) const {
-  const std::size_t used = BlockArena::bytes_of_all();
-  const Allocate allocate = in(context_.arena);
-  if (used < context_.kept_bytes)
-    stored.whole.get([&] { return std::make_unique<const BlockLevel>(copy_of(level, allocate)); });
-  else if (used < context_.kept_bytes + context_.recipe_bytes)
-    stored.recipe.get([&] { return std::make_unique<const LevelRecipe>(recipe_of(level, rules, allocate)); });
+void Block::keep_recipe(const Stored& stored, const BlockLevel& level, std::span<const PieceRule> rules) const {
+  if (BlockArena::bytes_of_all() >= context_.kept_bytes + context_.recipe_bytes) return;
+  stored.recipe.get([&] { return std::make_unique<const LevelRecipe>(recipe_of(level, rules, in(context_.arena))); });
 }
 
 const BlockLevel& Block::coarse() const {

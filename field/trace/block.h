@@ -76,7 +76,7 @@ class Block {
   const BlockLevel& level(const Stored&, LevelCache&, const Make&) const;
   template <class Make>
   BlockLevel made_again(const Stored&, const Make&, LevelBuffer&) const;
-  void keep(const Stored&, const BlockLevel&, std::span<const PieceRule>) const;
+  void keep_recipe(const Stored&, const BlockLevel&, std::span<const PieceRule>) const;
   Stored coarse_, fine_;
   std::uint64_t surface(int octant) const;
   unsigned octants_ = 0;  // a bit for each that may hold surface

@@ -89,6 +89,11 @@ inline SlightLanes slight_lanes(const float* group, const FarQuery& query, const
   return out;
 }
 
+// In smaller cubes little is slight that is not far.
+inline bool is_thin_beside(const float* group, const FarQuery& query) {
+  return 6 * largest_lane(load(group + 144)) < query.radius;
+}
+
 template <int Exponent>
 inline void add_far_nodes(const float* group, const FarQuery& query, const FarLanes& lanes_far, MomentSums& sums) {
   constexpr float position[4][3] = {{}, {0.5F}, {0.21132487F, 0.78867513F}, {0.11270167F, 0.5F, 0.88729833F}};
@@ -122,7 +127,7 @@ inline void split_groups(const float* group, int groups, const FarQuery& query, 
     unsigned bits = 0;
     for (int i = 0; i < lanes; ++i) bits |= (lanes_far.far[i] > 0 ? 0U : 1U) << i;
     near[k] = static_cast<unsigned short>(bits);
-    if (query.slight_field > 0 && bits != 0) {
+    if (query.slight_field > 0 && bits != 0 && is_thin_beside(group, query)) {
       const SlightLanes left_out = slight_lanes<Exponent>(group, query, lanes_far);
       for (int i = 0; i < lanes; ++i)
         if (left_out.slight[i] > 0) near[k] = static_cast<unsigned short>(near[k] & ~(1U << i));
