@@ -30,7 +30,7 @@ Level make_level(const Block::Context& context, const NearFar& precision, std::s
 std::optional<Level> make_angle_level(const Block::Context& context, const NearFar& precision,
                                       const CellTree::Cell& cell, int far_degree) {
   if (context.angle == nullptr) return {};
-  constexpr double open_all = -1;
+  constexpr double open_all = NearFar::open_all;
   Surroundings s;
   s.near = precision.split(*context.angle, context.angle->roots(), cell.center, cell.half, open_all, s.far);
   return make_level(context, precision, context.angle->pieces(), s, cell, far_degree);

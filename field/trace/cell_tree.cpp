@@ -15,7 +15,7 @@ namespace marrow {
 namespace {
 
 // Of the half side of a cube: groups up to this size are passed on unopened to the cubes inside it.
-constexpr double largest_group = 0.25, largest_coarse_group = 0.5, open_all = -1;
+constexpr double largest_group = 0.25, largest_coarse_group = 0.5, open_all = NearFar::open_all;
 
 // How large a cell may be where rays are few: of the local radius, and of the thinnest one.
 constexpr double most_radii = 12, most_thinnest = 32;
