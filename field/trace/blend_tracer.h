@@ -29,9 +29,11 @@ struct TraceOptions {
   /// Aim for the displacement of the traced surface from the exact one, over the local radius. Error budgets come from
   /// it; TraceStatistics::largest_error tells what is certified.
   double tolerance = 1e-5;
-  /// From so much memory of blocks in the process on (1.75 GiB), what blocks hold is not kept but made for each thread
-  /// anew, to the same bits. A million segments seen from afar have a million blocks that one or two rays meet.
-  std::size_t kept_bytes = std::size_t{7} << 28;
+  /// From so much memory of blocks in the process on (1.25 GiB), what blocks hold is not kept but made for each thread
+  /// anew, to the same bits. A million segments seen from afar have half a million blocks that few rays meet.
+  std::size_t kept_bytes = std::size_t{5} << 28;
+  /// From there on up to so much more (0.75 GiB) goes to recipes (level_recipe.h), from which it is made much faster.
+  std::size_t recipe_bytes = std::size_t{3} << 28;
   /// Empty: by the number of primitives.
   std::optional<CellTreeSettings> cells{};
   /// As in CellTreeSettings; may be completed until the first ray comes.

@@ -73,6 +73,7 @@ struct BlendTracer::State {
       strands.emplace(field, sources.pieces(), kernels);
       context.strands = &*strands;
     }
+    context.recipe_bytes = options.recipe_bytes;
     for (std::size_t i = 0; i < tree.tile_count(); ++i) bounds.include(tree.tile_box(i));
   }
 

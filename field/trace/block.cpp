@@ -5,6 +5,7 @@
 
 #include "field/trace/block_levels.h"
 #include "field/trace/level_cache.h"
+#include "field/trace/level_recipe.h"
 #include "field/trace/serial.h"
 
 namespace marrow {
@@ -38,6 +39,16 @@ std::uint64_t surface_slots(const Block::Context& context, const FieldLevel& lev
   return slots;
 }
 
+LevelCache& coarse_cache() {
+  thread_local LevelCache cache;
+  return cache;
+}
+
+template <class Memory>
+Allocate in(Memory& memory) {
+  return [&memory](std::size_t floats) { return memory.allocate(floats); };
+}
+
 }  // namespace
 
 Block::Block(const Context& context, const CellTree::Cell& cell)
@@ -57,8 +68,26 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
             .iso = context.iso.view(),
             .rows = context.iso.views().data(),
             .row_count = static_cast<int>(context.iso.views().size())} {
-  for (int octant = 0; octant < 8; ++octant)
-    if (may_hold(context, coarse().level, octant_center({0, 0, 0}, 1, octant), 0.5)) octants_ |= 1U << octant;
+  const auto find_octants = [&](const BlockLevel& coarse) {
+    for (int octant = 0; octant < 8; ++octant)
+      if (may_hold(context, coarse.level, octant_center({0, 0, 0}, 1, octant), 0.5)) octants_ |= 1U << octant;
+  };
+  // Nothing is kept of a cell that turns out to be empty, as half of them do where strands are thin.
+  if (!have_recipes(context)) {
+    find_octants(coarse());
+  } else if (BlockArena::bytes_of_all() < context.kept_bytes) {
+    thread_local LevelBuffer scratch;
+    const BlockLevel made = coarse_level(context, cell, in(scratch));
+    find_octants(made);
+    if (octants_ != 0)
+      coarse_.whole.get([&] { return std::make_unique<const BlockLevel>(copy_of(made, in(context.arena))); });
+  } else {
+    std::vector<PieceRule> rules;
+    const BlockLevel& made = coarse_cache().get(
+        serial_, [&](LevelBuffer& buffer) { return coarse_level(context, cell, in(buffer), &rules); });
+    find_octants(made);
+    if (octants_ != 0) keep_recipe(coarse_, made, rules);
+  }
 }
 
 // Whoever asks first finds the same.
@@ -90,24 +119,43 @@ Box3 Block::surface_box() const {
                                                                                                    cell_.half);
 }
 
+Block::Stored::Stored() = default;
+Block::Stored::~Stored() = default;
+
+// Whole as long as there is memory, then as a recipe, then not at all.
 template <class Make>
-const BlockLevel& Block::level(const Lazy<BlockLevel>& kept, LevelCache& cache, const Make& make) const {
-  if (const BlockLevel* ready = kept.peek()) return *ready;
-  if (BlockArena::bytes_of_all() >= context_.kept_bytes) return cache.get(serial_, make);
-  return kept.get([&] { return std::make_unique<const BlockLevel>(make(context_.arena)); });
+const BlockLevel& Block::level(const Stored& stored, LevelCache& cache, const Make& make) const {
+  if (const BlockLevel* ready = stored.whole.peek()) return *ready;
+  if (BlockArena::bytes_of_all() >= context_.kept_bytes)
+    return cache.get(serial_, [&](LevelBuffer& buffer) { return made_again(stored, make, buffer); });
+  return stored.whole.get([&] { return std::make_unique<const BlockLevel>(make(in(context_.arena), nullptr)); });
+}
+
+template <class Make>
+BlockLevel Block::made_again(const Stored& stored, const Make& make, LevelBuffer& buffer) const {
+  if (const LevelRecipe* recipe = stored.recipe.peek()) return level_from(*recipe, context_, cell_, in(buffer));
+  if (!have_recipes(context_)) return make(in(buffer), nullptr);
+  std::vector<PieceRule> rules;
+  const BlockLevel level = make(in(buffer), &rules);
+  keep_recipe(stored, level, rules);
+  return level;
+}
+
+void Block::keep_recipe(const Stored& stored, const BlockLevel& level, std::span<const PieceRule> rules) const {
+  if (BlockArena::bytes_of_all() >= context_.kept_bytes + context_.recipe_bytes) return;
+  stored.recipe.get([&] { return std::make_unique<const LevelRecipe>(recipe_of(level, rules, in(context_.arena))); });
 }
 
 const BlockLevel& Block::coarse() const {
-  thread_local LevelCache cache;
-  return level(coarse_, cache, [&](auto& memory) {
-    return coarse_level(context_, cell_, [&](std::size_t floats) { return memory.allocate(floats); });
+  return level(coarse_, coarse_cache(), [&](const Allocate& allocate, std::vector<PieceRule>* rules) {
+    return coarse_level(context_, cell_, allocate, rules);
   });
 }
 
 const BlockLevel& Block::fine() const {
   thread_local LevelCache cache;
-  return level(fine_, cache, [&](auto& memory) {
-    return fine_level(context_, cell_, [&](std::size_t floats) { return memory.allocate(floats); });
+  return level(fine_, cache, [&](const Allocate& allocate, std::vector<PieceRule>* rules) {
+    return fine_level(context_, cell_, allocate, rules);
   });
 }
 

@@ -15,7 +15,10 @@
 
 namespace marrow {
 
+class LevelBuffer;
 class LevelCache;
+struct LevelRecipe;
+struct PieceRule;
 class Strands;
 
 /// Coordinates of the block: x = (p - center) / half. Its levels are made when the first ray needs them; safe to use
@@ -35,6 +38,7 @@ class Block {
     std::size_t kept_bytes;             ///< see TraceOptions
     const SourceTree* angle = nullptr;  ///< of angle_field.h, where skeletons have an angle each
     const Strands* strands = nullptr;   ///< where their directions give the angle
+    std::size_t recipe_bytes = 0;       ///< see TraceOptions
   };
   /// The context must outlive the block.
   Block(const Context&, const CellTree::Cell&);
@@ -54,16 +58,26 @@ class Block {
   /// for the same one. They are the same in either case.
   const BlockLevel& coarse() const;
   const BlockLevel& fine() const;
-  const BlockLevel* fine_if_kept() const { return fine_.peek(); }
+  const BlockLevel* fine_if_kept() const { return fine_.whole.peek(); }
 
  private:
   const Context& context_;
   std::uint64_t serial_;
   CellTree::Cell cell_;
   BlockView view_;
+  // One of the two levels.
+  struct Stored {
+    Lazy<BlockLevel> whole;
+    Lazy<LevelRecipe> recipe;
+    Stored();
+    ~Stored();
+  };
   template <class Make>
-  const BlockLevel& level(const Lazy<BlockLevel>& kept, LevelCache&, const Make&) const;
-  Lazy<BlockLevel> coarse_, fine_;
+  const BlockLevel& level(const Stored&, LevelCache&, const Make&) const;
+  template <class Make>
+  BlockLevel made_again(const Stored&, const Make&, LevelBuffer&) const;
+  void keep_recipe(const Stored&, const BlockLevel&, std::span<const PieceRule>) const;
+  Stored coarse_, fine_;
   std::uint64_t surface(int octant) const;
   unsigned octants_ = 0;  // a bit for each that may hold surface
   mutable std::array<std::atomic<std::uint64_t>, 8> surface_{};

@@ -137,6 +137,8 @@ struct FarQuery {
   float field_budget, gradient_budget;              ///< the errors that one piece may cause
   float field_series, gradient_series;              ///< binom(exponent + 4, 5), binom(exponent + 5, 5)
   float field_rule[4] = {}, gradient_rule[4] = {};  ///< constants of GaussError for 1, 2 and 3 nodes
+  /// What a near piece may add anywhere in the ball to be left out, and count as an error; 0: none is left out.
+  float slight_field = 0, slight_gradient = 0;
 };
 
 /// Sums over the pieces that are far: their errors, their field and |G| at the cube's centre at most, their moments.

@@ -15,9 +15,10 @@ namespace {
 constexpr int coarse_far_degree = 2;
 
 Level make_level(const Block::Context& context, const NearFar& precision, std::span<const Piece> pieces,
-                 const Surroundings& around, const CellTree::Cell& cell, int far_degree) {
+                 const Surroundings& around, const CellTree::Cell& cell, int far_degree,
+                 std::vector<PieceRule>* rules = nullptr) {
   SourceEmitter emitter(context.cutter, precision, context.degree, cell.center, cell.half);
-  for (const SourceRef ref : around.near) emitter.emit(pieces[ref.index()]);
+  for (const SourceRef ref : around.near) emitter.emit(pieces[ref.index()], ref.index(), rules);
   Level level{std::move(emitter.curves), std::move(emitter.points), around.far, far_degree};
   level.far.f_error += emitter.f_error;
   level.far.gradient_error += emitter.gradient_error;
@@ -29,7 +30,7 @@ Level make_level(const Block::Context& context, const NearFar& precision, std::s
 std::optional<Level> make_angle_level(const Block::Context& context, const NearFar& precision,
                                       const CellTree::Cell& cell, int far_degree) {
   if (context.angle == nullptr) return {};
-  constexpr double open_all = -1;
+  constexpr double open_all = NearFar::open_all;
   Surroundings s;
   s.near = precision.split(*context.angle, context.angle->roots(), cell.center, cell.half, open_all, s.far);
   return make_level(context, precision, context.angle->pieces(), s, cell, far_degree);
@@ -63,16 +64,18 @@ BlockLevel write_level(const Level& level, const std::optional<Level>& angle, Er
 
 }  // namespace
 
-BlockLevel coarse_level(const Block::Context& context, const CellTree::Cell& cell, const Allocate& allocate) {
+BlockLevel coarse_level(const Block::Context& context, const CellTree::Cell& cell, const Allocate& allocate,
+                        std::vector<PieceRule>* rules) {
   return write_level(make_level(context, context.coarse, context.pieces, context.tree.coarse_surroundings(cell), cell,
-                                coarse_far_degree),
+                                coarse_far_degree, rules),
                      make_angle_level(context, context.coarse, cell, coarse_far_degree), Errors::Counted, allocate);
 }
 
-BlockLevel fine_level(const Block::Context& context, const CellTree::Cell& cell, const Allocate& allocate) {
+BlockLevel fine_level(const Block::Context& context, const CellTree::Cell& cell, const Allocate& allocate,
+                      std::vector<PieceRule>* rules) {
   if (context.strands != nullptr) return write_stranded_level(make_stranded_level(context, cell), cell.half, allocate);
   return write_level(
-      make_level(context, context.fine, context.pieces, context.tree.surroundings(cell), cell, field_degree),
+      make_level(context, context.fine, context.pieces, context.tree.surroundings(cell), cell, field_degree, rules),
       make_angle_level(context, context.fine, cell, field_degree), Errors::Stated, allocate);
 }
 

@@ -15,7 +15,10 @@ namespace marrow {
 namespace {
 
 // Of the half side of a cube: groups up to this size are passed on unopened to the cubes inside it.
-constexpr double largest_group = 0.25, largest_coarse_group = 0.5, open_all = -1;
+constexpr double largest_group = 0.25, largest_coarse_group = 0.5, open_all = NearFar::open_all;
+
+// How large a cell may be where rays are few: of the local radius, and of the thinnest one.
+constexpr double most_radii = 12, most_thinnest = 32;
 
 // Squared, of a point outside; 0 inside.
 double distance2(const Box3& box, const Vec3d& p) {
@@ -41,8 +44,10 @@ void CellTree::expand(const CubeView& parent, int depth, Level& out) const {
   for (int i = 0; i < 8; ++i) {
     const Divider::Octant& octant = octants[static_cast<std::size_t>(i)];
     if (!octant.mixed) continue;
-    if (half <= cells_along * settings_.cell_size * octant.local_radius || depth + 2 >= settings_.deepest_level)
-      out.tiles.push_back({.center = octant_center(parent.center, parent.half, i), .half = half, .level = depth});
+    const Vec3d center = octant_center(parent.center, parent.half, i);
+    if (half <= cells_along * settings_.cell_size * octant.local_radius || depth + 2 >= settings_.deepest_level ||
+        is_hardly_met(octant, center, half / 2))
+      out.tiles.push_back({.center = center, .half = half, .level = depth});
     else out.branches.push_back(divider_.child(parent, i));
   }
 }
@@ -128,11 +133,18 @@ Surroundings CellTree::coarse_around(const TilePlace& place) const {
   return s;
 }
 
+// A cell of many radii, but of so few rays that long lists cost less than more cells.
+bool CellTree::is_hardly_met(const Divider::Octant& octant, const Vec3d& center, double half) const {
+  constexpr double very_few = 0.625;  // of the rays below which a cell is hardly worth making
+  return settings_.spacing && half > most_radii * octant.local_radius && half <= most_thinnest * octant.thinnest &&
+         half <= very_few * settings_.spacing->least_cell(center, half);
+}
+
 // A cell narrower than some rays is hardly worth making; but beyond some radii its lists grow too long, and beyond some
 // of the thinnest radii positions in float are too rough (Divider).
 bool CellTree::is_small_enough(const Divider::Octant& octant, const Vec3d& center, double half, int level) const {
-  constexpr double most_radii = 12, most_thinnest = 32;
   if (half <= settings_.cell_size * octant.local_radius || level >= settings_.deepest_level) return true;
+  if (is_hardly_met(octant, center, half)) return true;
   return settings_.spacing && half <= most_radii * octant.local_radius && half <= most_thinnest * octant.thinnest &&
          half <= settings_.spacing->least_cell(center, half);
 }

@@ -69,6 +69,7 @@ class CellTree {
  private:
   struct Level;
   bool is_small_enough(const Divider::Octant&, const Vec3d& center, double half, int level) const;
+  bool is_hardly_met(const Divider::Octant&, const Vec3d& center, double half) const;
   void expand(const CubeView&, int depth, Level& out) const;
   std::unique_ptr<const Tile> divide(const TilePlace&) const;
   Surroundings coarse_around(const TilePlace&) const;

@@ -48,7 +48,7 @@ class LevelCache {
   }
 
  private:
-  static constexpr int bits = 8, shift = 64 - bits;
+  static constexpr int bits = 10, shift = 64 - bits;
   struct Entry {
     std::uint64_t block = 0;
     LevelBuffer buffer;

@@ -105,6 +105,18 @@ bool NearFar::is_far(const SourceNode& group, double distance, double cube_radiu
   return true;
 }
 
+// A near group whose largest field in the cube is within the budget.
+bool NearFar::is_slight(const SourceNode& group, double distance, double cube_radius, FarField& far) const {
+  const double clear = distance - cube_radius - group.radius;
+  if (!(clear > 0)) return false;
+  const double raised = 1 / integer_power(clear, group.exponent);
+  const double field = group.mass * raised, gradient = group.exponent * group.tau_mass * raised / clear;
+  if (field > budget_.field || gradient > budget_.gradient) return false;
+  far.f_error += field;
+  far.gradient_error += gradient;
+  return true;
+}
+
 bool NearFar::add_if_far(const SourceNode& group, FarGroups& groups) const {
   const double d = length(group.center - groups.center);
   if (!is_far(group, d, groups.half * std::sqrt(3.0), groups.far)) return false;
@@ -112,7 +124,7 @@ bool NearFar::add_if_far(const SourceNode& group, FarGroups& groups) const {
   return true;
 }
 
-FarQuery NearFar::query(bool points) const {
+FarQuery NearFar::query(bool points, Slight slight) const {
   const int m = degree_ - (points ? 1 : 0);
   const auto binomial5 = [](int top) {
     return static_cast<float>(top * (top - 1) * (top - 2) / 6 * (top - 3) / 4 * (top - 4) / 5);
@@ -126,6 +138,10 @@ FarQuery NearFar::query(bool points) const {
              .gradient_budget = static_cast<float>(budget_.gradient),
              .field_series = binomial5(m + 4),
              .gradient_series = binomial5(m + 5)};
+  if (slight == Slight::LeftOut) {
+    q.slight_field = q.field_budget;
+    q.slight_gradient = q.gradient_budget;
+  }
   for (int nodes = 1; nodes <= 3; ++nodes) {
     const GaussError::Bound c = quadrature_.constants(nodes);
     q.field_rule[nodes] = static_cast<float>(c.field);
@@ -144,14 +160,14 @@ void NearFar::add_sums(const FarSums& sums, int exponent, FarField& far) const {
 }
 
 std::vector<PieceIndex> NearFar::split(std::span<const Piece> pieces, std::span<const PieceIndex> candidates,
-                                       const Vec3d& center, double half, FarField& far) const {
+                                       const Vec3d& center, double half, FarField& far, Slight slight) const {
   std::vector<PieceIndex> near;
   for (const bool points : {false, true}) {
     const NearGroups groups(pieces, candidates, points, center, half);
     if (groups.count() == 0) continue;
     std::vector<unsigned short> near_lanes(static_cast<std::size_t>(groups.count()));
     FarSums sums;
-    kernels_.far_split(groups.data(), groups.count(), query(points), near_lanes.data(), sums);
+    kernels_.far_split(groups.data(), groups.count(), query(points, slight), near_lanes.data(), sums);
     add_sums(sums, degree_ - (points ? 1 : 0), far);
     std::size_t lane = 0;
     for (const PieceIndex i : candidates) {
@@ -168,6 +184,7 @@ std::vector<SourceRef> NearFar::split(const SourceTree& tree, std::span<const So
   std::vector<SourceRef> near, open(candidates.rbegin(), candidates.rend());
   std::vector<PieceIndex> pieces;
   FarGroups groups{center, half, far};
+  const Slight slight = keep == open_all ? Slight::LeftOut : Slight::Kept;
   while (!open.empty()) {
     const SourceRef here = open.back();
     open.pop_back();
@@ -177,6 +194,8 @@ std::vector<SourceRef> NearFar::split(const SourceTree& tree, std::span<const So
     }
     const SourceNode& node = tree.node(here.index());
     if (add_if_far(node, groups)) continue;
+    if (slight == Slight::LeftOut && is_slight(node, length(node.center - center), half * std::sqrt(3.0), far))
+      continue;
     if (node.radius <= keep * half) {
       near.push_back(here);
     } else if (node.is_leaf()) {
@@ -187,7 +206,8 @@ std::vector<SourceRef> NearFar::split(const SourceTree& tree, std::span<const So
     }
   }
   fold(groups);
-  for (const PieceIndex i : split(tree.pieces(), pieces, center, half, far)) near.push_back(SourceRef::piece(i));
+  for (const PieceIndex i : split(tree.pieces(), pieces, center, half, far, slight))
+    near.push_back(SourceRef::piece(i));
   return near;
 }
 

@@ -23,6 +23,9 @@ struct Surroundings {
   FarField far;
 };
 
+/// Whether near sources that hardly count in a cube are left out of its list.
+enum class Slight { Kept, LeftOut };
+
 /// The share of the total error that one piece, or one group of pieces, may cause in f and in |grad_S f|.
 struct ErrorBudget {
   double field, gradient;
@@ -36,13 +39,17 @@ class NearFar {
 
   /// Adds the far ones of `candidates` to `far` (in the coordinates of the cube) and returns the near ones: curves,
   /// then points, in their order.
+  /// With `slight`, near ones whose whole field in the cube is within the budget are left out, as an error of `far`.
   std::vector<PieceIndex> split(std::span<const Piece>, std::span<const PieceIndex> candidates, const Vec3d& center,
-                                double half, FarField& far) const;
+                                double half, FarField& far, Slight = Slight::Kept) const;
 
   /// The same for sources of a tree; groups are opened until they are far, or no larger than `keep` times `half`.
-  /// Adds the far ones to `far` and returns the near ones, groups first.
+  /// Adds the far ones to `far` and returns the near ones, groups first. With open_all what is slight is left out:
+  /// lists that are passed on to smaller cubes keep it, where it may be far.
   std::vector<SourceRef> split(const SourceTree&, std::span<const SourceRef> candidates, const Vec3d& center,
                                double half, double keep, FarField& far) const;
+
+  static constexpr double open_all = -1;  ///< as `keep`
 
   using Rule = GaussError::Rule;
   /// The smallest rule whose error at this distance is within `share` of the budget, else the largest.
@@ -55,9 +62,10 @@ class NearFar {
   Remainders remainders(bool point, double q) const;
   struct FarGroups;
   bool is_far(const SourceNode&, double distance, double cube_radius, FarField& far) const;
+  bool is_slight(const SourceNode&, double distance, double cube_radius, FarField& far) const;
   bool add_if_far(const SourceNode&, FarGroups&) const;
   void fold(const FarGroups&) const;
-  FarQuery query(bool points) const;
+  FarQuery query(bool points, Slight) const;
   void add_sums(const FarSums&, int exponent, FarField&) const;
   double sum_rounding() const;
 

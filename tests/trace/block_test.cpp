@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -152,6 +153,41 @@ TEST(Block, LevelsThatAreNotKeptAreNeverThoseOfAnotherBlock) {
       ASSERT_TRUE(std::equal(a.far, a.far + floats, b.far)) << "cell " << i;
     }
   }
+}
+
+// Another thread finds the recipe that the first one has left, and nothing else.
+TEST(Block, LevelsFromRecipesHaveTheSameBits) {
+  Random random(64);
+  int cut_pieces = 0, levels = 0;
+  for (const Setting& s : settings()) {
+    const Stage stage(random_scene(random, s, 8));
+    Block::Context recipes = stage.context;
+    recipes.kept_bytes = 0;
+    recipes.recipe_bytes = std::size_t{1} << 30;
+    for (std::size_t i = 0; i < stage.cells.size(); i += 1 + stage.cells.size() / 20) {
+      const Block kept = stage.block(i), told(recipes, stage.cells[i]);
+      if (kept.empty()) continue;
+      told.fine();
+      for (const auto level : {&Block::coarse, &Block::fine}) {
+        const FieldLevel& expected = (kept.*level)().level;
+        std::thread([&] {
+          const FieldLevel& found = (told.*level)().level;
+          const auto groups = static_cast<std::size_t>(expected.curve_groups + expected.point_groups);
+          ASSERT_EQ(found.curve_groups, expected.curve_groups);
+          ASSERT_EQ(found.point_groups, expected.point_groups);
+          EXPECT_TRUE(std::equal(found.sources, found.sources + groups * floats_per_group, expected.sources));
+          EXPECT_TRUE(std::equal(found.far, found.far + 4 * monomials_to_degree(expected.far_degree), expected.far));
+          EXPECT_EQ(found.f_error, expected.f_error);
+          EXPECT_EQ(found.far_g_bend, expected.far_g_bend);
+          cut_pieces += groups > 8;
+          ++levels;
+        }).join();
+      }
+      EXPECT_EQ(told.fine_if_kept(), nullptr);
+    }
+  }
+  EXPECT_GT(levels, 50);
+  EXPECT_GT(cut_pieces, 5);
 }
 
 }  // namespace

@@ -23,11 +23,12 @@ struct Variant {
   TraceOptions options;
 };
 
-// The sets, and the best of them without memory for blocks.
+// The sets, and the best of them without memory for blocks, or with memory for recipes alone.
 std::vector<Variant> variants_here() {
   std::vector<Variant> all;
   for (const std::string& name : sets_here()) all.push_back({name, {.instruction_set = name}});
-  all.push_back({"nothing kept", {.instruction_set = "", .kept_bytes = 0}});
+  all.push_back({"nothing kept", {.instruction_set = "", .kept_bytes = 0, .recipe_bytes = 0}});
+  all.push_back({"recipes", {.instruction_set = "", .kept_bytes = 0}});
   return all;
 }
 

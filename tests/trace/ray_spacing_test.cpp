@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <iostream>
 #include <memory>
 #include <optional>
 
@@ -69,6 +70,41 @@ TEST(RaySpacing, LargerCellsHoldTheSameSurface) {
   for (std::size_t k = 0; k < 3; ++k) blocks[k] = tracers[k]->statistics().blocks;
   EXPECT_GT(blocks[0], blocks[1]);
   EXPECT_GT(blocks[1], blocks[2]);
+}
+
+// Of threads far thinner than the gaps between rays cells may have many radii.
+TEST(RaySpacing, CellsOfThinThreadsHoldTheSameSurface) {
+  constexpr double radius = 0.002;
+  Random random(83);
+  BlendField blend;
+  blend.alpha = contact_alpha(blend.degree);
+  for (int i = 0; i < 60; ++i) {
+    const Vec3d from = random.vector(1);
+    blend.segments.add({from, from + random.vector(0.1), radius, 0.8 * radius}, {});
+  }
+  TraceOptions options;
+  options.spacing = std::make_shared<const RaySpacing>(seen_from({0, 0, 9}, false));
+  const auto fine = std::move(*BlendTracer::make(blend, {})), few = std::move(*BlendTracer::make(blend, options));
+  int hits = 0, misses = 0;
+  for (std::size_t i = 0; i < 3000; ++i) {
+    const SegmentSkeleton& s = blend.segments.skeletons[i % blend.segments.size()];
+    const Ray ray =
+        between(random_direction(random) * 5, lerp(s.from, s.to, random.between(0, 1)) + random.vector(2 * radius));
+    const auto expected = first_hit(*fine, ray), found = first_hit(*few, ray);
+    if (expected && found) {
+      EXPECT_NEAR(corrected_value(blend, ray.at(*found)), 1, 5e-5) << "ray " << i;
+      hits += std::fabs(*found - *expected) < 1e-4 * radius;
+    } else if (const auto grazing = expected ? expected : found) {
+      EXPECT_NEAR(corrected_value(blend, ray.at(*grazing + 1e-3 * radius)), 1, 1e-4) << "ray " << i;
+    } else {
+      ++misses;
+    }
+  }
+  EXPECT_GT(hits, 1000);
+  EXPECT_GT(misses, 300);
+  EXPECT_LT(8 * few->statistics().blocks, fine->statistics().blocks);
+  std::cout << "  " << hits << " hits, " << misses << " misses; blocks " << few->statistics().blocks << " instead of "
+            << fine->statistics().blocks << '\n';
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ struct FarLanes {
   V16 far;               // 1 or 0
   V16 f_error, g_error;  // of lanes that are far
   V16 field, gradient;   // largest over the ball's centre
+  V16 distance;          // of the ball's centre, at least
   int nodes = 1;
 };
 
@@ -28,6 +29,7 @@ inline FarLanes far_lanes(const float* group, const FarQuery& query) {
   const V16 exact = root_of(dx * dx + dy * dy + dz * dz), d = exact - 2e-6F * (query.radius + exact + size);
   const V16 q = query.radius / larger(d, splat(1e-20F)), high = tau / larger(d, splat(1e-20F));
   FarLanes out;
+  out.distance = d;
   out.field = share * inverse_power<Exponent>(high * high, m);
   out.gradient = static_cast<float>(m) * out.field * high;
   const V16 f_tail = series_tail(q, m, query.field_series), g_tail = series_tail(q, m + 1, query.gradient_series);
@@ -67,6 +69,31 @@ inline FarLanes far_lanes(const float* group, const FarQuery& query) {
   return out;
 }
 
+struct SlightLanes {
+  V16 slight = {};                 // 1 or 0
+  V16 f_error = {}, g_error = {};  // of lanes that are slight
+};
+
+// Near pieces that hardly count anywhere in the ball: their largest field, at the least distance, is their error.
+template <int Exponent>
+inline SlightLanes slight_lanes(const float* group, const FarQuery& query, const FarLanes& lanes_far) {
+  const int m = Exponent > 0 ? Exponent : query.exponent;
+  const V16 share = load(group + 112), tau = load(group + 144);
+  const V16 d = lanes_far.distance - query.radius, high = tau / larger(d, splat(1e-20F));
+  SlightLanes out;
+  out.f_error = share * inverse_power<Exponent>(high * high, m);
+  out.g_error = static_cast<float>(m) * out.f_error * high;
+  V16 slight = out.f_error <= query.slight_field ? 1.0F - lanes_far.far : V16{};
+  slight = out.g_error <= query.slight_gradient ? slight : V16{};
+  out.slight = share > 0.0F ? slight : V16{};
+  return out;
+}
+
+// In smaller cubes little is slight that is not far.
+inline bool is_thin_beside(const float* group, const FarQuery& query) {
+  return 6 * largest_lane(load(group + 144)) < query.radius;
+}
+
 template <int Exponent>
 inline void add_far_nodes(const float* group, const FarQuery& query, const FarLanes& lanes_far, MomentSums& sums) {
   constexpr float position[4][3] = {{}, {0.5F}, {0.21132487F, 0.78867513F}, {0.11270167F, 0.5F, 0.88729833F}};
@@ -100,6 +127,13 @@ inline void split_groups(const float* group, int groups, const FarQuery& query, 
     unsigned bits = 0;
     for (int i = 0; i < lanes; ++i) bits |= (lanes_far.far[i] > 0 ? 0U : 1U) << i;
     near[k] = static_cast<unsigned short>(bits);
+    if (query.slight_field > 0 && bits != 0 && is_thin_beside(group, query)) {
+      const SlightLanes left_out = slight_lanes<Exponent>(group, query, lanes_far);
+      for (int i = 0; i < lanes; ++i)
+        if (left_out.slight[i] > 0) near[k] = static_cast<unsigned short>(near[k] & ~(1U << i));
+      totals[0] += left_out.slight > 0.0F ? left_out.f_error : V16{};
+      totals[1] += left_out.slight > 0.0F ? left_out.g_error : V16{};
+    }
     if (bits == 0xFFFF) continue;
     totals[0] += lanes_far.far > 0.0F ? lanes_far.f_error : V16{};
     totals[1] += lanes_far.far > 0.0F ? lanes_far.g_error : V16{};
