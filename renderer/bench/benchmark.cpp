@@ -55,7 +55,7 @@ class Measurement {
     describe_surfaces(*ready);
     add_peers();
     race_frames(*ready);
-    race_bounces();
+    race_bounces(*ready);
     if (settings_.rules) compare_rules();
     if (settings_.processes) race_processes(workload_, settings_, scene_, tell_, out_);
     for (Racer& r : racers_) out_.engines.push_back(std::move(r.figures));
@@ -157,7 +157,7 @@ class Measurement {
     if (racers_.size() > 1) out_.sample_over_cones = median_ratio(samples, racers_[1].frames);
   }
 
-  void race_bounces() {
+  void race_bounces(const PreparedScene& ready) {
     for (Racer& r : racers_) {
       r.starts = hits_of_frame(*r.engine, workload_, frame_);
       diffuse_paths(*r.engine, r.starts, bounces_of_a_path, frame_);  // bounces enter cells of their own
@@ -175,6 +175,9 @@ class Measurement {
       r.figures.bounce_cost = median(r.bounces);
       r.figures.bounce_ratio = median_ratio(racers_.front().bounces, r.bounces);
     }
+    Racer& own = racers_.front();
+    recorded(ready, own.figures.bounces,
+             [&](const RayEngine& engine) { return diffuse_paths(engine, own.starts, bounces_of_a_path, frame_); });
   }
 
   void describe_surfaces(const PreparedScene& ready) {

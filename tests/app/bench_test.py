@@ -24,6 +24,7 @@ class BenchTest(ProgramTest):
         for peer in (cones, triangles):
             self.assertLess(abs(peer["frame_hits"] / marrow["frame_hits"] - 1), 0.25)
         self.assertGreater(marrow["evaluations_per_ray"], 0)
+        self.assertGreater(marrow["bounce_evaluations_per_ray"], 0)
         self.assertEqual(cones["evaluations_per_ray"], 0)
         self.assertGreater(w1["cells"], 0)
         self.assertGreater(w1["memory_bytes"], 0)
