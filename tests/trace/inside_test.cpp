@@ -4,21 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "field/trace/blend_tracer.h"
+#include "tests/trace/first_of_tiles.h"
 #include "tests/trace/oracle.h"
 #include "tests/trace/random_scene.h"
 
 namespace marrow::test {
 namespace {
-
-std::optional<double> hit_of(const BlendTracer& tracer, const Ray& ray, bool any) {
-  std::optional<double> best;
-  for (std::size_t i = 0; i < tracer.tile_count(); ++i) {
-    CellLog log;
-    const auto hit = tracer.first_hit(i, ray, any, log);
-    if (hit && (!best || hit->t < *best)) best = hit->t;
-  }
-  return best;
-}
 
 // In a skeleton, or anywhere clearly inside.
 std::optional<Vec3d> place_inside(Random& random, const BlendField& field, const Oracle& oracle) {
@@ -51,13 +42,13 @@ TEST(RayFromInside, LeavesWhereTheFieldFallsToOne) {
         const auto from = place_inside(random, field, oracle);
         if (!from) continue;
         Ray ray{*from, UnitVec3::unchecked(random_direction(random))};
-        const auto exit = hit_of(tracer, ray, false);
+        const auto exit = first_hit(tracer, ray, false);
         ASSERT_TRUE(exit) << "n " << n << " alpha " << alpha;
         ++rays;
         EXPECT_NEAR(oracle.value(ray.at(*exit)), 1, 1e-5) << "n " << n << " alpha " << alpha;
         expect_inside_until(oracle, ray, *exit);
         ray.t_max = *exit * 1.001;
-        EXPECT_TRUE(hit_of(tracer, ray, true));
+        EXPECT_TRUE(first_hit(tracer, ray, true));
         if (HasFatalFailure()) return;
       }
     }
