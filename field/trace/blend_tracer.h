@@ -5,6 +5,7 @@
 // rays or on threads.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <limits>
@@ -17,6 +18,7 @@
 #include "field/blend/blend_field.h"
 #include "field/math/box3.h"
 #include "field/math/ray.h"
+#include "field/math/ray_packet.h"
 #include "field/trace/cell_settings.h"
 
 namespace marrow {
@@ -64,6 +66,12 @@ struct CellLog {
   double outside_from = std::numeric_limits<double>::infinity();
 };
 
+/// What the rays of a packet met in a part, lane by lane; `hit.block` is null where nothing was met.
+struct CellHits {
+  std::array<CellHit, RayPacket::size> hit{};
+  std::array<CellLog, RayPacket::size> log{};
+};
+
 struct SurfacePoint {
   UnitVec3 normal;  ///< outward, from the closed-form gradient of the corrected field
   Vec3d outside;    ///< beside the surface, where the field is certainly below the iso-value
@@ -97,6 +105,8 @@ class BlendTracer {
   /// The first hit of first_hit() in a tile is the nearest one of its parts, to the same bits; except that a ray is not
   /// followed from part to part: when it turns out to begin inside, `log.side` says so, and its tiles have to be asked.
   std::optional<CellHit> first_hit(const TracePart&, const Ray&, bool any, CellLog&) const;
+  /// The same for the rays of a set, the lowest bit that of lane 0, to the same bits.
+  void first_hits(const TracePart&, const RayPacket&, unsigned rays, bool any, CellHits&) const;
   /// Normal and starting point at a hit in this tile.
   SurfacePoint surface_at(std::size_t tile, const Vec3d& position) const;
   /// The same in the block of a hit.
@@ -113,6 +123,8 @@ class BlendTracer {
   struct Stretch;
   std::optional<Stretch> stretch_in(const Tile&, const Ray&, bool any) const;
   std::optional<Stretch> stretch_in(const Tile&, int slot, const Ray&, bool any) const;
+  std::optional<Stretch> enter(const TracePart&, const Ray&, bool any, CellLog&) const;
+  void first_hits_in_cell(const TracePart&, const Block&, const RayPacket&, unsigned rays, bool any, CellHits&) const;
   void add_parts(std::size_t tile, const Tile& within, std::vector<TracePart>&) const;
   const Block& block(const Tile&, int slot) const;
   std::unique_ptr<State> state_;

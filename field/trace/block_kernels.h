@@ -85,6 +85,18 @@ struct Root {
   bool enters_inside = false;   ///< a hit, but the field is clearly above 1 where surface can first be in the block
 };
 
+/// Sixteen rays side by side, and what is found on each; in the sets of rays the lowest bit is that of lane 0.
+struct LocalRays {
+  alignas(64) float origin[3][lanes];
+  alignas(64) float direction[3][lanes];  ///< unit length
+};
+struct Roots {
+  alignas(64) float t[lanes];
+  alignas(64) float undecided[lanes];  ///< as in Root
+  alignas(64) int evaluations[lanes];
+  unsigned hit, begins_outside, enters_inside;
+};
+
 /// Gaps along a ray shorter than this times the distance to the nearest source are not decided.
 inline constexpr float shortest_gap = 2e-5F;
 
@@ -191,6 +203,15 @@ struct BlockKernels {
   };
   /// The first t in [t0, t1] where the corrected field reaches 1.
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
+  /// As Query, of none that is leaving.
+  struct PacketQuery {
+    alignas(64) float t0[lanes];
+    alignas(64) float t1[lanes];
+    unsigned active, from_surface, from_outside;  ///< sets of rays
+    bool any;
+  };
+  /// first_root() of each active ray, to the same bits.
+  void (*first_roots)(const BlockView&, const LocalRays&, const PacketQuery&, Roots&);
   PointField (*point_field)(const FieldLevel&, int degree, const float point[3]);
   /// Through the slots of a set, in coordinates of the cube of 4 x 4 x 4 slots, [-1, 1]^3.
   void (*walk)(std::uint64_t slots, const LocalRay&, float t0, float t1, Walk&);

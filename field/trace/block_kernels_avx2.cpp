@@ -6,6 +6,7 @@ namespace {
 // In this order: each builds on those before.
 // clang-format off
 #include "field/trace/kernels/lanes.h"
+#include "field/trace/kernels/per_ray.h"
 #include "field/trace/kernels/sums.h"
 #include "field/trace/kernels/far_on_ray.h"
 #include "field/trace/kernels/iso.h"
@@ -16,8 +17,10 @@ namespace {
 #include "field/trace/kernels/varied_angle.h"
 #include "field/trace/kernels/march.h"
 #include "field/trace/kernels/search.h"
-#include "field/trace/kernels/walk.h"
+#include "field/trace/kernels/runs.h"
 #include "field/trace/kernels/first_root.h"
+#include "field/trace/kernels/packet.h"
+#include "field/trace/kernels/walk.h"
 #include "field/trace/kernels/points.h"
 #include "field/trace/kernels/cube.h"
 #include "field/trace/kernels/moments.h"
@@ -26,8 +29,8 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root, point_field,   walk,           cube_bounds, far_moments,
-                                        far_split,  octant_bounds, strand_samples, add_strand};
+  static constexpr BlockKernels kernels{first_root,  first_roots, point_field,   walk,           cube_bounds,
+                                        far_moments, far_split,   octant_bounds, strand_samples, add_strand};
   return kernels;
 }
 

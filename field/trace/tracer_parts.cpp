@@ -71,22 +71,99 @@ std::optional<BlendTracer::Stretch> BlendTracer::stretch_in(const Tile& tile, in
                  std::min(whole->exit, cube.to_world(end))};
 }
 
-std::optional<CellHit> BlendTracer::first_hit(const TracePart& part, const Ray& ray, bool any, CellLog& log) const {
-  if (part.within == nullptr) return first_hit(part.tile, ray, any, log);
+// Where a ray is in a part, and what is known of it there.
+std::optional<BlendTracer::Stretch> BlendTracer::enter(const TracePart& part, const Ray& ray, bool any,
+                                                       CellLog& log) const {
   log.side = CellLog::Side::Unknown;
   const auto stretch = stretch_in(*part.within, part.slot, ray, any);
   if (!stretch) return {};
   log.enter = stretch->enter;
   if (stretch->enter >= log.outside_from) log.side = CellLog::Side::Outside;
-  const auto hit =
-      part.within->content().cells >> part.slot & 1
-          ? hit_in(*part.within, part.slot, ray, any, stretch->enter, stretch->exit, log)
-          : hit_in(state_->tree.child(*part.within, part.slot), ray, any, stretch->enter, stretch->exit, log);
-  if (log.side == CellLog::Side::Inside) return {};
-  // Where the ray begins in this part, it begins outside.
+  return stretch;
+}
+
+namespace {
+
+// Where the ray begins in this part, it begins outside.
+void pass_on_side(const Ray& ray, double enter, double exit, CellLog& log) {
   if (log.side == CellLog::Side::Outside)
-    log.outside_from = std::min(log.outside_from, stretch->enter <= ray.t_min ? ray.t_min : stretch->exit);
+    log.outside_from = std::min(log.outside_from, enter <= ray.t_min ? ray.t_min : exit);
+}
+
+bool is_cell(const TracePart& part) { return part.within->content().cells >> part.slot & 1; }
+
+}  // namespace
+
+std::optional<CellHit> BlendTracer::first_hit(const TracePart& part, const Ray& ray, bool any, CellLog& log) const {
+  if (part.within == nullptr) return first_hit(part.tile, ray, any, log);
+  const auto stretch = enter(part, ray, any, log);
+  if (!stretch) return {};
+  const auto hit =
+      is_cell(part) ? hit_in(*part.within, part.slot, ray, any, stretch->enter, stretch->exit, log)
+                    : hit_in(state_->tree.child(*part.within, part.slot), ray, any, stretch->enter, stretch->exit, log);
+  if (log.side == CellLog::Side::Inside) return {};
+  pass_on_side(ray, stretch->enter, stretch->exit, log);
   return hit && hit->t <= ray.t_max ? hit : std::nullopt;
+}
+
+void BlendTracer::first_hits(const TracePart& part, const RayPacket& packet, unsigned rays, bool any,
+                             CellHits& out) const {
+  if (part.within != nullptr && is_cell(part)) {
+    const Block& b = block(*part.within, part.slot);
+    if (!b.empty()) return first_hits_in_cell(part, b, packet, rays, any, out);
+  }
+  for (unsigned left = rays; left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left);
+    const auto i = static_cast<std::size_t>(lane);
+    out.hit[i] = first_hit(part, packet.ray(lane), any, out.log[i]).value_or(CellHit{});
+  }
+}
+
+void BlendTracer::first_hits_in_cell(const TracePart& part, const Block& b, const RayPacket& packet, unsigned rays,
+                                     bool any, CellHits& out) const {
+  LocalRays local{};
+  BlockKernels::PacketQuery query{.t0 = {}, .t1 = {}, .active = 0, .from_surface = 0, .from_outside = 0, .any = any};
+  std::array<Stretch, RayPacket::size> stretches;
+  for (unsigned left = rays; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+    const Ray ray = packet.ray(static_cast<int>(i));
+    out.hit[i] = {};
+    const auto stretch = enter(part, ray, any, out.log[i]);
+    if (!stretch) continue;
+    stretches[i] = *stretch;
+    const unsigned bit = 1U << i;
+    const RayInCube cube(ray, b.center(), b.half());
+    for (std::size_t k = 0; k < 3; ++k) {
+      local.origin[k][i] = cube.local.origin[k];
+      local.direction[k][i] = cube.local.direction[k];
+    }
+    query.t0[i] = cube.to_local(stretch->enter);
+    query.t1[i] = cube.to_local(stretch->exit);
+    query.active |= bit;
+    query.from_surface |= stretch->enter <= ray.t_min ? bit : 0;
+    query.from_outside |= out.log[i].side == CellLog::Side::Outside ? bit : 0;
+  }
+  if (query.active == 0) return;
+  Roots roots;
+  state_->kernels.first_roots(b.view(), local, query, roots);
+  for (unsigned left = query.active; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+    const unsigned bit = 1U << i;
+    const Ray ray = packet.ray(static_cast<int>(i));
+    CellLog& log = out.log[i];
+    if (roots.enters_inside & bit) {  // it may begin inside: that is asked one by one
+      out.hit[i] = first_hit(part, ray, any, log).value_or(CellHit{});
+      continue;
+    }
+    const RayInCube cube(ray, b.center(), b.half());
+    log.evaluations += static_cast<std::uint32_t>(roots.evaluations[i]);
+    if (roots.begins_outside & bit) log.side = CellLog::Side::Outside;
+    log.undecided = std::min(log.undecided, cube.to_world(roots.undecided[i]));
+    pass_on_side(ray, stretches[i].enter, stretches[i].exit, log);
+    if (!(roots.hit & bit)) continue;
+    const double t = std::max(cube.to_world(roots.t[i]), ray.t_min), end = any ? std::min(t, stretches[i].exit) : t;
+    if (end <= ray.t_max) out.hit[i] = {end, &b};
+  }
 }
 
 std::vector<TracePart> BlendTracer::parts() const {

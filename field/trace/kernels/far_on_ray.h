@@ -6,68 +6,105 @@ constexpr int monomial_at(int a, int b, int c) {
   return d * (d + 1) * (d + 2) / 6 + rest * (rest + 1) / 2 + rest - b;
 }
 
+// The coefficients of one monomial: all four, for one place ...
+struct AllFour {
+  const float* far;
+  V4 at(int monomial) const { return load4(far + 4 * monomial); }
+};
+// ... or one of them, for a place in each lane.
+struct OneOfFour {
+  const float* far;
+  float at(int monomial) const { return far[4 * monomial]; }
+};
+
 // The far polynomials by Horner's rule, unrolled by the compiler: the sum over c of the coefficients of x^A y^B z^c
 // with c <= Degree - A - B, ...
-template <int Degree, int A, int B, int C, class Z>
-inline auto nested_in_z(const FieldLevel& level, const Z& z) {
-  const V4 here = load4(level.far + 4 * monomial_at(A, B, C));
+template <int Degree, int A, int B, int C, class Far, class Z>
+inline auto nested_in_z(const Far& far, const Z& z) {
+  const auto here = far.at(monomial_at(A, B, C));
   if constexpr (A + B + C == Degree) return here;
-  else return nested_in_z<Degree, A, B, C + 1>(level, z) * z + here;
+  else return nested_in_z<Degree, A, B, C + 1>(far, z) * z + here;
 }
 
 // ... then over b ...
-template <int Degree, int A, int B, class Y, class Z>
-inline auto nested_in_y(const FieldLevel& level, const Y& y, const Z& z) {
-  const auto here = nested_in_z<Degree, A, B, 0>(level, z);
+template <int Degree, int A, int B, class Far, class Y, class Z>
+inline auto nested_in_y(const Far& far, const Y& y, const Z& z) {
+  const auto here = nested_in_z<Degree, A, B, 0>(far, z);
   if constexpr (A + B == Degree) return here;
-  else return nested_in_y<Degree, A, B + 1>(level, y, z) * y + here;
+  else return nested_in_y<Degree, A, B + 1>(far, y, z) * y + here;
 }
 
 // ... and over a.
-template <int Degree, int A = 0, class X, class Y, class Z>
-inline auto nested_polynomial(const FieldLevel& level, const X& x, const Y& y, const Z& z) {
-  const auto here = nested_in_y<Degree, A, 0>(level, y, z);
+template <int Degree, int A = 0, class Far, class X, class Y, class Z>
+inline auto nested_polynomial(const Far& far, const X& x, const Y& y, const Z& z) {
+  const auto here = nested_in_y<Degree, A, 0>(far, y, z);
   if constexpr (A == Degree) return here;
-  else return nested_polynomial<Degree, A + 1>(level, x, y, z) * x + here;
+  else return nested_polynomial<Degree, A + 1>(far, x, y, z) * x + here;
 }
 
 // (f, Gx, Gy, Gz) of the far field at a point.
 inline V4 far_at(const FieldLevel& level, float x, float y, float z) {
-  return level.far_degree == 2 ? nested_polynomial<2>(level, x, y, z) : nested_polynomial<4>(level, x, y, z);
+  const AllFour far{level.far};
+  return level.far_degree == 2 ? nested_polynomial<2>(far, x, y, z) : nested_polynomial<4>(far, x, y, z);
 }
 
-// A value and its derivative along a ray.
+// A value and its derivative along a ray. Value: V4, all four of one ray; V16, one of each of sixteen.
+template <class Value>
 struct FarSlope {
-  V4 value, slope;
+  Value value, slope;
 };
 
 // A coordinate of a point on a ray and its derivative; Horner's rule for both.
+template <class F>
 struct OnRay {
-  float at, slope;
+  F at, slope;
 };
-inline FarSlope operator*(const V4& c, const OnRay& x) { return {c * x.at, c * x.slope}; }
-inline FarSlope operator*(const FarSlope& p, const OnRay& x) {
+inline Probe probe_of(const OnRay<float> (&p)[3]) {
+  return {splat(p[0].at), splat(p[1].at), splat(p[2].at), splat(p[0].slope), splat(p[1].slope), splat(p[2].slope)};
+}
+template <class Coefficients, class F>
+inline auto operator*(const Coefficients& c, const OnRay<F>& x) {
+  using Value = decltype(c * x.at);
+  return FarSlope<Value>{c * x.at, c * x.slope};
+}
+template <class Value, class F>
+inline FarSlope<Value> operator*(const FarSlope<Value>& p, const OnRay<F>& x) {
   return {p.value * x.at, p.slope * x.at + p.value * x.slope};
 }
-inline FarSlope operator+(const FarSlope& p, const V4& c) { return {p.value + c, p.slope}; }
-inline FarSlope operator+(const FarSlope& p, const FarSlope& c) { return {p.value + c.value, p.slope + c.slope}; }
+template <class Value, class Coefficients>
+inline FarSlope<Value> operator+(const FarSlope<Value>& p, const Coefficients& c) {
+  return {p.value + c, p.slope};
+}
+template <class Value>
+inline FarSlope<Value> operator+(const FarSlope<Value>& p, const FarSlope<Value>& c) {
+  return {p.value + c.value, p.slope + c.slope};
+}
 
-// The far field along a ray.
-struct FarOnRay {
-  const FieldLevel& level;
-  const LocalRay& ray;
-
-  OnRay coordinate(int k, float t) const { return {ray.origin[k] + ray.direction[k] * t, ray.direction[k]}; }
-
-  void add(float t, RaySums& s) const {
-    const OnRay x = coordinate(0, t), y = coordinate(1, t), z = coordinate(2, t);
-    const FarSlope far =
-        level.far_degree == 2 ? nested_polynomial<2>(level, x, y, z) : nested_polynomial<4>(level, x, y, z);
-    s.f += far.value[0];
-    s.df += far.slope[0];
-    for (int i = 0; i < 3; ++i) {
-      s.g[i] += far.value[i + 1];
-      s.dg[i] += far.slope[i + 1];
-    }
+// The far field at (x, y, z), with its derivatives, added to the sums.
+inline void add_far(const FieldLevel& level, const OnRay<float> (&p)[3], RaySums<float>& s) {
+  const AllFour coefficients{level.far};
+  const FarSlope<V4> far = level.far_degree == 2 ? nested_polynomial<2>(coefficients, p[0], p[1], p[2])
+                                                 : nested_polynomial<4>(coefficients, p[0], p[1], p[2]);
+  s.f += far.value[0];
+  s.df += far.slope[0];
+  for (int i = 0; i < 3; ++i) {
+    s.g[i] += far.value[i + 1];
+    s.dg[i] += far.slope[i + 1];
   }
-};
+}
+
+inline void add_far(const FieldLevel& level, const OnRay<V16> (&p)[3], RaySums<V16>& s) {
+  const auto part = [&](int k) {
+    const OneOfFour coefficients{level.far + k};
+    return level.far_degree == 2 ? nested_polynomial<2>(coefficients, p[0], p[1], p[2])
+                                 : nested_polynomial<4>(coefficients, p[0], p[1], p[2]);
+  };
+  const FarSlope<V16> f = part(0);
+  s.f += f.value;
+  s.df += f.slope;
+  for (int i = 0; i < 3; ++i) {
+    const FarSlope<V16> g = part(i + 1);
+    s.g[i] += g.value;
+    s.dg[i] += g.slope;
+  }
+}

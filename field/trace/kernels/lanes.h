@@ -1,36 +1,17 @@
 // Vectors of 16 floats with sums in one fixed order. Part of block_kernels_<set>.cpp, inside its namespace.
+// Lanes are sources in sums, and rays in packets.
 // Only builtins and functions of these files are used: an inline function of a library, compiled here for a
 // large instruction set, could be the copy that the linker keeps for everybody.
 
 using V16 = float __attribute__((vector_size(64)));
 using V4 = float __attribute__((vector_size(16)));
+using Index16 = int __attribute__((vector_size(64)));
 
 inline constexpr float infinity = __builtin_inff();
 inline float max_of(float a, float b) { return a > b ? a : b; }
 inline float min_of(float a, float b) { return a < b ? a : b; }
 inline float abs_of(float a) { return __builtin_fabsf(a); }
 inline float root_of(float a) { return __builtin_sqrtf(a); }
-
-// q^(-1/k) for q > 0 to some 1e-5: a guess from the exponent bits, then Newton's iteration y (1 + (1 - q y^k) / k).
-// Root 0 in the template means known only at run time.
-template <int Root>
-inline float inverse_root(float q, int root) {
-  const int k = Root > 0 ? Root : root;
-  unsigned bits;
-  __builtin_memcpy(&bits, &q, sizeof bits);
-  constexpr unsigned one = 127U << 23;  // the bits of 1.0F
-  bits = one + one / static_cast<unsigned>(k) - bits / static_cast<unsigned>(k);
-  float y;
-  __builtin_memcpy(&y, &bits, sizeof y);
-  const float step = 1 / static_cast<float>(k);
-  for (int i = 0; i < 3; ++i) {
-    float power = q;
-    for (int j = 0; j < k; ++j) power *= y;
-    y += y * (1 - power) * step;
-  }
-  return y;
-}
-inline float inverse_root(float q, int k) { return k == 3 ? inverse_root<3>(q, k) : inverse_root<0>(q, k); }
 
 inline V16 splat(float s) { return V16{} + s; }
 
@@ -89,6 +70,7 @@ inline void sum_lanes(const V16 (&a)[12], float (&sums)[16]) {
 }
 
 inline V16 larger(V16 a, V16 b) { return a > b ? a : b; }
+inline V16 smaller(V16 a, V16 b) { return a < b ? a : b; }
 
 inline float largest_lane(V16 v) {
   v = larger(v, __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7));

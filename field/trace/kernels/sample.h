@@ -24,21 +24,37 @@ struct SampleShare<true> {
 };
 
 // The field at one t, raised by the level's certified error, with what bounds it nearby.
-template <bool Varied>
+template <bool Varied, class F = float>
 struct SampleOf : SampleShare<Varied> {
-  float t;
-  RaySums s;
-  float y;         // |G|
-  float distance;  // to the nearest source, at most
-  float residual;  // lower V(u) - v of the field raised by the level's errors and by rounding: where it is positive the
-                   // field is surely below 1, and some step from here can be certified
-  float nominal;   // V(u) - v of the field as summed
+  F t;
+  RaySums<F> s;
+  F y;         // |G|
+  F distance;  // to the nearest source, at most
+  F residual;  // lower V(u) - v of the field raised by the level's errors and by rounding: where it is positive the
+               // field is surely below 1, and some step from here can be certified
+  F nominal;   // V(u) - v of the field as summed
   // Where the residual is not positive but the nominal one is, "outside" can still be told to within rounding: by the
   // nominal curve and unraised sums. What is passed over in that way is reported.
-  bool sure;                 // residual > 0
-  float margin;              // the residual, or the nominal one when not sure
-  float raise;               // factor of f and |G| for what rounding can do
-  float slope;               // derivative of the residual along the ray
-  float v, v_slope, curve;   // v, its derivative along the ray, and V(u) of the field as summed
-  float x_weight, y_weight;  // -d residual / dx, dy
+  MaskOf<F> sure;        // residual > 0
+  F margin;              // the residual, or the nominal one when not sure
+  F raise;               // factor of f and |G| for what rounding can do
+  F slope;               // derivative of the residual along the ray
+  F v, v_slope, curve;   // v, its derivative along the ray, and V(u) of the field as summed
+  F x_weight, y_weight;  // -d residual / dx, dy
 };
+
+// The samples of some rays of a packet.
+inline void assign(Index16 mask, SampleOf<false, V16>& to, const SampleOf<false, V16>& from) {
+  using Sample = SampleOf<false, V16>;
+  using Sums = RaySums<V16>;
+  for (V16 Sample::*part :
+       {&Sample::t, &Sample::y, &Sample::distance, &Sample::residual, &Sample::nominal, &Sample::margin, &Sample::raise,
+        &Sample::slope, &Sample::v, &Sample::v_slope, &Sample::curve, &Sample::x_weight, &Sample::y_weight})
+    assign(mask, to.*part, from.*part);
+  for (V16 Sums::*part : {&Sums::f, &Sums::df, &Sums::second, &Sums::third}) assign(mask, to.s.*part, from.s.*part);
+  for (int i = 0; i < 3; ++i) {
+    assign(mask, to.s.g[i], from.s.g[i]);
+    assign(mask, to.s.dg[i], from.s.dg[i]);
+  }
+  assign(mask, to.sure, from.sure);
+}

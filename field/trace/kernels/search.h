@@ -1,219 +1,322 @@
 // The first root along a stretch of a ray. Part of block_kernels_<set>.cpp.
 
 // A stretch, and how far it is known only to within rounding; empty at first.
+template <class F>
 struct Doubt {
-  float begin = infinity, end = -infinity;
+  F begin = all_lanes<F>(infinity), end = all_lanes<F>(-infinity);
 };
 
-// `front` is the end of the stretch from t0 that is certified outside; islands are certified stretches beyond it,
-// nearest on top; `inside` is the nearest sample known not to be outside.
-template <bool Varied>
-struct Search {
-  using Sample = SampleOf<Varied>;
-  using Scaled = typename Marcher<Varied>::Scaled;
+// Certified stretches beyond the front, nearest on top.
+template <bool Varied, class F>
+struct Islands {
+  using Sample = SampleOf<Varied, F>;
+  using Mask = MaskOf<F>;
 
   // Bisection halves the first gap before it adds an island: down to shortest_gap that is some 20 on top of the others.
-  static constexpr int most_islands = 40;
+  static constexpr int most = 40;
   struct Island {
-    float begin, end;
+    F begin, end;
     Sample sample;
   };
-  Marcher<Varied>& march;
-  float front, end;
-  bool have_last = false, have_inside = false;
-  bool exact;                  // the level is the field itself: it tells what is inside
-  float undecided = infinity;  // where the first stretch was passed over that could not be decided
-  Doubt doubt;                 // the last such stretch, not in `undecided` yet
-  Sample last, inside;         // last: the outside sample whose certificate reaches the front
-  Island islands[most_islands];
-  int island_count = 0;
+  Island stack[most];
+  IntOf<F> count{};
 
-  Search(Marcher<Varied>& m, float t0, float t1)
-      : march(m), front(t0), end(t1), exact(!(m.level.f_error > 0) && !(m.level.g_error > 0)) {}
+  Mask some() const { return count > 0; }
+  void clear(Mask active) { count = select(active, IntOf<F>{}, count); }
 
-  bool missed() const { return !have_inside && front >= end; }
-  bool bracketed() const { return have_inside && island_count == 0; }
-  float gap_end() const { return island_count > 0 ? islands[island_count - 1].begin : have_inside ? inside.t : end; }
-
-  void reach(float t, const Sample& p) {
-    advance(t, p);
-    while (island_count > 0 && islands[island_count - 1].begin <= front) {
-      const Island& top = islands[--island_count];
-      if (top.end > front) advance(top.end, top.sample);
+  // Calls visit(island, rays) for the topmost ones; all rays of the mask have some.
+  template <class Visit>
+  void at_top(Mask rays, const Visit& visit) {
+    if constexpr (sizeof(F) == sizeof(float)) {
+      visit(stack[count - 1], rays);
+    } else {
+      for (int depth = 0; any(rays); ++depth) {
+        const Mask here = rays & (count == depth + 1);
+        if (any(here)) visit(stack[depth], here);
+        rays = rays & !here;
+      }
     }
   }
 
-  void advance(float t, const Sample& p) {
-    if (!p.sure) pass(t);
-    front = t;
-    last = p;
-    have_last = true;
+  void push(Mask rays, F begin, F end, const Sample& sample) {
+    rays = rays & (count < most);
+    if (!any(rays)) return;
+    count = count + select(rays, IntOf<F>{} + 1, IntOf<F>{});
+    at_top(rays, [&](Island& top, Mask here) {
+      assign(here, top.begin, begin);
+      assign(here, top.end, end);
+      assign(here, top.sample, sample);
+    });
+  }
+  void pop(Mask rays) { count = count - select(rays, IntOf<F>{} + 1, IntOf<F>{}); }
+};
+
+// `front` is the end of the stretch from t0 that is certified outside; `inside` is the nearest sample known not to be
+// outside.
+template <bool Varied, class F = float>
+struct Search {
+  using Sample = SampleOf<Varied, F>;
+  using Mask = MaskOf<F>;
+  using Scaled = typename Marcher<Varied, F>::Scaled;
+
+  Marcher<Varied, F>& march;
+  F front, end;
+  Mask have_last{}, have_inside{};
+  bool exact;                            // the level is the field itself: it tells what is inside
+  F undecided = all_lanes<F>(infinity);  // where the first stretch was passed over that could not be decided
+  Doubt<F> doubt;                        // the last such stretch, not in `undecided` yet
+  Sample last, inside;                   // last: the outside sample whose certificate reaches the front
+  Islands<Varied, F> islands;
+  F nearest_island{};  // where it begins
+
+  Search(Marcher<Varied, F>& m, F t0, F t1)
+      : march(m), front(t0), end(t1), exact(!(m.level.f_error > 0) && !(m.level.g_error > 0)) {}
+
+  Mask missed() const { return (front >= end) & !have_inside; }
+  Mask bracketed() const { return have_inside & !islands.some(); }
+  F gap_end() const { return select(islands.some(), nearest_island, select(have_inside, inside.t, end)); }
+
+  void reach(Mask rays, F t, const Sample& p) {
+    advance(rays, t, p);
+    for (;;) {
+      const Mask met = rays & islands.some() & (nearest_island <= front);
+      if (!any(met)) return;
+      islands.at_top(met, [&](const auto& top, Mask here) { advance(here & (top.end > front), top.end, top.sample); });
+      islands.pop(met);
+      const Mask more = met & islands.some();
+      if (any(more)) islands.at_top(more, [&](const auto& top, Mask here) { assign(here, nearest_island, top.begin); });
+    }
+  }
+
+  void advance(Mask rays, F t, const Sample& p) {
+    pass(rays & !p.sure, t);
+    assign(rays, front, t);
+    assign(rays, last, p);
+    have_last = have_last | rays;
   }
 
   // What is before t is not decided.
-  void pass(float t) {
-    if (front > doubt.end) {
-      undecided = min_of(undecided, doubt.begin);
-      doubt.begin = front;
-    }
-    doubt.end = t;
+  void pass(Mask rays, F t) {
+    if (!any(rays)) return;
+    const Mask apart = rays & (front > doubt.end);
+    undecided = select(apart, min_of(undecided, doubt.begin), undecided);
+    assign(apart, doubt.begin, front);
+    assign(rays, doubt.end, t);
   }
 
   // Where the first stretch lies that was not decided. What ends at the crossing is the crossing, as well as it is
   // known.
-  float undecided_before(float crossing) const {
-    const float tolerance = 2 * shortest_gap * (have_last ? last.distance : have_inside ? inside.distance : 1);
-    return doubt.end + tolerance >= crossing ? undecided : min_of(undecided, doubt.begin);
+  F undecided_before(F crossing) const {
+    const F distance = select(have_last, last.distance, select(have_inside, inside.distance, all_lanes<F>(1)));
+    const F tolerance = 2 * shortest_gap * distance;
+    return select(doubt.end + tolerance >= crossing, undecided, min_of(undecided, doubt.begin));
   }
 
   // How far the certificate of p reaches toward `limit`; exactly `limit` when it gets there.
-  float certified_end(const Sample& p, float sign, float limit) const {
-    const float whole = abs_of(limit - p.t), step = march.certified_step(p, sign, whole);
-    return step >= whole ? limit : p.t + sign * step;
+  F certified_end(Mask rays, const Sample& p, float sign, F limit) const {
+    const F whole = abs_of(limit - p.t), step = march.certified_step(p, sign, whole, rays);
+    return select(step >= whole, limit, p.t + sign * step);
   }
 
-  void record(const Sample& p) {
-    if ((exact ? p.nominal : p.residual) <= 0) {
-      inside = p;
-      have_inside = true;
-      island_count = 0;
-      return;
+  void record(Mask rays, const Sample& p) {
+    const Mask not_outside = rays & ((exact ? p.nominal : p.residual) <= 0.0F);
+    if (any(not_outside)) {
+      assign(not_outside, inside, p);
+      have_inside = have_inside | not_outside;
+      islands.clear(not_outside);
     }
-    const float limit = gap_end();
-    const float begin = certified_end(p, -1, front), finish = certified_end(p, 1, limit);
-    if (begin <= front) reach(finish, p);
-    else if (island_count < most_islands) islands[island_count++] = {begin, finish, p};
+    const Mask outside = rays & !not_outside;
+    if (!any(outside)) return;
+    const F limit = gap_end();
+    const F begin = certified_end(outside, p, -1, front), finish = certified_end(outside, p, 1, limit);
+    const Mask from_front = outside & (begin <= front), beyond = outside & !from_front;
+    if (any(beyond)) {
+      assign(beyond & (islands.count < islands.most), nearest_island, begin);
+      islands.push(beyond, begin, finish, p);
+    }
+    if (any(from_front)) reach(from_front, finish, p);
   }
 
   // Where the field as summed, without the level's errors, reaches 1: by the samples at the two ends of the first gap.
   // NaN-free; may lie outside the gap.
-  float estimated_root() const {
+  F estimated_root() const {
     Scaled before{}, behind{};
-    if (have_last) before = march.scaled(last);
-    if (bracketed()) behind = march.scaled(inside);
-    const bool from_last = before.slope < 0, from_inside = behind.slope < 0;
-    if (from_last && from_inside) return hermite_root(before, behind);
-    if (from_last) return last.t + before.newton_step();
-    if (from_inside) return inside.t + behind.newton_step();
-    return infinity;
+    if (any(have_last)) before = march.scaled(last);
+    const Mask is_bracketed = bracketed();
+    if (any(is_bracketed)) behind = march.scaled(inside);
+    const Mask from_last = have_last & (before.slope < 0.0F), from_inside = is_bracketed & (behind.slope < 0.0F);
+    F root = all_lanes<F>(infinity);
+    if (any(from_inside)) root = select(from_inside, inside.t + behind.newton_step(), root);
+    if (any(from_last)) root = select(from_last, last.t + before.newton_step(), root);
+    const Mask from_both = from_last & from_inside;
+    if (any(from_both)) root = select(from_both, hermite_root(before, behind), root);
+    return root;
   }
 
   // The root of the cubic that meets the scaled values and slopes of both samples.
-  float hermite_root(const Scaled& before, const Scaled& behind) const {
-    const float h = inside.t - last.t, p0 = before.value, p1 = behind.value;
-    const float d0 = before.slope * h, d1 = behind.slope * h;
-    float u = p0 / max_of(p0 - p1, 1e-20F);
+  F hermite_root(const Scaled& before, const Scaled& behind) const {
+    const F h = inside.t - last.t, p0 = before.value, p1 = behind.value;
+    const F d0 = before.slope * h, d1 = behind.slope * h;
+    F u = p0 / max_of(p0 - p1, 1e-20F);
     for (int k = 0; k < 3; ++k) {
-      const float u2 = u * u, u3 = u2 * u;
-      const float v = p0 * (1 - 3 * u2 + 2 * u3) + d0 * (u - 2 * u2 + u3) + p1 * (3 * u2 - 2 * u3) + d1 * (u3 - u2);
-      const float dv =
-          p0 * (6 * u2 - 6 * u) + d0 * (1 - 4 * u + 3 * u2) + p1 * (6 * u - 6 * u2) + d1 * (3 * u2 - 2 * u);
-      if (dv < 0) u -= v / dv;
-      u = min_of(1, max_of(0, u));
+      const F u2 = u * u, u3 = u2 * u;
+      const F v = p0 * (1 - 3 * u2 + 2 * u3) + d0 * (u - 2 * u2 + u3) + p1 * (3 * u2 - 2 * u3) + d1 * (u3 - u2);
+      const F dv = p0 * (6 * u2 - 6 * u) + d0 * (1 - 4 * u + 3 * u2) + p1 * (6 * u - 6 * u2) + d1 * (3 * u2 - 2 * u);
+      u = select(dv < 0.0F, u - v / dv, u);
+      u = min_of(1.0F, max_of(0.0F, u));
     }
     return last.t + u * h;
   }
 
+  F distance_at_gap() const { return select(have_last, last.distance, inside.distance); }
+
   // Where to look next: just before an estimated root in the first gap, so that one certificate from there closes the
   // gap; else in the gap's middle.
-  float guess() const {
-    const float right = gap_end(), gap = right - front, root = estimated_root();
-    if (!(root > front && root < right)) return 0.5F * (front + right);
-    const float distance = have_last ? last.distance : inside.distance;
-    const float back = 2e-4F * distance + (bracketed() ? 0 : 0.02F * (root - front));
-    const float inset = 0.02F * gap;
-    const float least = min_of(min_of(inset, 1e-4F * distance), 0.5F * (root - front));
-    return min_of(max_of(root - back, front + least), right - inset);
+  F guess() const {
+    const F right = gap_end(), gap = right - front, root = estimated_root(), distance = distance_at_gap();
+    const F back = 2e-4F * distance + select(bracketed(), F{}, 0.02F * (root - front));
+    const F inset = 0.02F * gap;
+    const F least = min_of(min_of(inset, 1e-4F * distance), 0.5F * (root - front));
+    return select((root > front) & (root < right), min_of(max_of(root - back, front + least), right - inset),
+                  0.5F * (front + right));
   }
 
   // Newton's root from the last outside sample, when it is proved: the certificate reaches it to within the shortest
   // gap, and the field is above 1 just behind it. The step is so short that the scaled Newton step, whose error is of
   // third order, is exact to float.
-  bool pinned(float& root) const {
-    if (!have_last) return false;
+  Mask pinned(Mask rays, F& root) const {
+    rays = rays & have_last;
+    if (!any(rays)) return rays;
     const Scaled scaled = march.scaled(last);
-    const float step = scaled.newton_step(), tolerance = shortest_gap * last.distance;
-    root = max_of(front, last.t + step);
-    if (!(scaled.slope < 0) || !(step < 1.2e-3F * last.distance)) return false;
-    if (!(root - front < tolerance) || !(root <= end)) return false;
-    return (bracketed() && inside.t - root < tolerance) || march.crossed_at(last, step + tolerance);
+    const F step = scaled.newton_step(), tolerance = shortest_gap * last.distance;
+    root = select(rays, max_of(front, last.t + step), root);
+    const Mask close =
+        rays & (scaled.slope < 0.0F) & (step < 1.2e-3F * last.distance) & (root - front < tolerance) & (root <= end);
+    if (!any(close)) return close;
+    const Mask ends = close & bracketed() & (inside.t - root < tolerance), open = close & !ends;
+    return any(open) ? ends | (open & march.crossed_at(last, step + tolerance)) : ends;
   }
 
   // A gap too short to decide: with an inside sample behind it, it holds the root; else a grazing touch, left.
-  bool give_up_gap(float& root) {
-    const float right = gap_end();
-    if (bracketed()) {
-      const float estimate = estimated_root();
-      root = estimate >= front && estimate <= right ? estimate : 0.5F * (front + right);
-      return true;
+  Mask give_up_gap(Mask rays, F& root) {
+    const F right = gap_end();
+    const Mask holds = rays & bracketed();
+    if (any(holds)) {
+      const F estimate = estimated_root();
+      root = select(holds, select((estimate >= front) & (estimate <= right), estimate, 0.5F * (front + right)), root);
     }
-    pass(right);
-    if (island_count > 0) reach(right, islands[island_count - 1].sample);
-    else front = right;
-    return false;
+    const Mask touch = rays & !holds;
+    if (!any(touch)) return holds;
+    pass(touch, right);
+    const Mask before_island = touch & islands.some(), at_end = touch & !before_island;
+    assign(at_end, front, right);
+    if (any(before_island)) {
+      Sample begin = last;
+      islands.at_top(before_island, [&](const auto& top, Mask here) { assign(here, begin, top.sample); });
+      reach(before_island, right, begin);
+    }
+    return holds;
   }
 
   // Nothing can be told of gaps shorter than this, where p is.
-  bool too_short(const Sample& p) const {
-    const float right = gap_end(), middle = 0.5F * (front + right);
-    return right - front < shortest_gap * p.distance || !(middle > front && middle < right);
+  Mask too_short(const Sample& p) const {
+    const F right = gap_end(), middle = 0.5F * (front + right);
+    return (right - front < shortest_gap * p.distance) | !((middle > front) & (middle < right));
   }
 
   // The next place after `samples` of them, p the last. Newton's guesses are quick unless the field stays near 1 over a
   // long way; halving the first gap always ends, because each half ends at a sample.
-  float next(const Sample& p, float before, int samples) const {
+  F next(const Sample& p, F before, int samples) const {
     constexpr int patience = 48;
     if (samples >= patience) return 0.5F * (front + gap_end());
+    F place = guess();
     // Where the field all but touches 1 certificates are short: look from the other side of the touch.
-    if (p.margin > 0 && front - before < shortest_gap * p.distance)
-      return front + min_of(0.5F * (gap_end() - front), 1e-3F * p.distance);
-    return guess();
+    const Mask touching = (p.margin > 0.0F) & (front - before < shortest_gap * p.distance);
+    if (any(touching)) place = select(touching, front + min_of(0.5F * (gap_end() - front), 1e-3F * p.distance), place);
+    return place;
   }
 };
 
-// The coarse level: it finds where the surface may be, at a fraction of the cost. When it returns Near, the front is
-// certified and `guess` is close to the root.
-enum class Approach { Missed, SurelyInside, Near };
+// The coarse level: it finds where the surface may be, at a fraction of the cost. Of `near` rays the front is certified
+// and `guess` is close to the root.
+template <class F>
+struct Approach {
+  MaskOf<F> surely_inside{}, near{};
+  F guess{};
+};
 
-template <bool Varied>
-inline Approach approach(Search<Varied>& s, bool any, float& guess) {
+template <bool Varied, class F>
+inline Approach<F> approach(Search<Varied, F>& s, bool any_root, MaskOf<F> open) {
+  using Mask = MaskOf<F>;
   constexpr int most_samples = 200;
-  float next = 0.5F * (s.front + s.end);
-  for (int i = 0; i < most_samples; ++i) {
-    const SampleOf<Varied> p = s.march.sample(next);
-    const float before = s.front;
-    s.record(p);
-    if (s.missed()) return Approach::Missed;
-    if (any && p.residual <= 0 && s.march.inside_at(p, 0)) return Approach::SurelyInside;
-    next = s.guess();
-    const float gap = s.gap_end() - s.front;
-    if (s.bracketed() && (gap < 0.1F * p.distance || (s.have_last && next - s.front < 0.05F * p.distance))) break;
-    const bool stuck = p.residual > 0 && s.front - before < 1e-3F * p.distance && p.t - before < 1e-2F * p.distance;
-    if (gap < 1e-3F * p.distance || stuck) break;
+  Approach<F> out;
+  F next = 0.5F * (s.front + s.end);
+  for (int i = 0; i < most_samples && any(open); ++i) {
+    const SampleOf<Varied, F> p = s.march.sample(next, open);
+    const F before = s.front;
+    s.record(open, p);
+    open = open & !s.missed();
+    if (any_root) {
+      const Mask inside = open & (p.residual <= 0.0F);
+      if (any(inside)) {
+        const Mask surely = inside & s.march.inside_at(p, F{});
+        out.surely_inside = out.surely_inside | surely;
+        open = open & !surely;
+      }
+    }
+    if (!any(open)) break;
+    next = select(open, s.guess(), next);
+    const F gap = s.gap_end() - s.front;
+    const Mask found =
+        s.bracketed() & ((gap < 0.1F * p.distance) | (s.have_last & (next - s.front < 0.05F * p.distance)));
+    const Mask stuck =
+        (p.residual > 0.0F) & (s.front - before < 1e-3F * p.distance) & (p.t - before < 1e-2F * p.distance);
+    const Mask enough = open & (found | (gap < 1e-3F * p.distance) | stuck);
+    out.near = out.near | enough;
+    open = open & !enough;
   }
+  out.near = out.near | open;
+  if (!any(out.near)) return out;
   // A little before the root, so that one fine certificate can reach it.
-  const float root = s.estimated_root();
-  guess = root < infinity ? root - 3e-4F * (s.have_inside ? s.inside.distance : s.last.distance) : next;
-  return Approach::Near;
+  const F root = s.estimated_root(), distance = select(s.have_inside, s.inside.distance, s.last.distance);
+  out.guess = select(root < infinity, root - 3e-4F * distance, next);
+  return out;
 }
 
+template <class F>
+struct RootOf {
+  F t{};
+  MaskOf<F> hit{};
+  F undecided = all_lanes<F>(infinity);
+  IntOf<F> evaluations{};
+  MaskOf<F> begins_outside{}, enters_inside{};  // as in Root
+};
+
 // The fine level: it decides.
-template <bool Varied>
-inline Root decide(Search<Varied>& s, float guess, bool any) {
-  Root root;
-  for (int samples = 1; !root.hit && !s.missed(); ++samples) {
-    const SampleOf<Varied> p = s.march.sample(guess);
-    const float before = s.front;
-    s.record(p);
-    if (s.missed()) break;
-    root.hit = s.pinned(root.t);
-    if (!root.hit && any && s.have_inside) {
-      root.hit = true;
-      root.t = s.inside.t;
+template <bool Varied, class F>
+inline RootOf<F> decide(Search<Varied, F>& s, F guess, bool any_root, MaskOf<F> rays) {
+  using Mask = MaskOf<F>;
+  RootOf<F> root;
+  Mask open = rays;
+  for (int samples = 1; any(open); ++samples) {
+    const SampleOf<Varied, F> p = s.march.sample(guess, open);
+    const F before = s.front;
+    s.record(open, p);
+    open = open & !s.missed();
+    if (!any(open)) break;
+    Mask hit = s.pinned(open, root.t);
+    if (any_root) {
+      const Mask met = open & !hit & s.have_inside;
+      root.t = select(met, s.inside.t, root.t);
+      hit = hit | met;
     }
-    if (!root.hit && s.too_short(p)) root.hit = s.give_up_gap(root.t);
+    const Mask given_up = open & !hit & s.too_short(p);
+    if (any(given_up)) hit = hit | s.give_up_gap(given_up, root.t);
+    root.hit = root.hit | hit;
+    open = open & !hit & !s.missed();
+    if (!any(open)) break;
     guess = s.next(p, before, samples);
   }
-  root.undecided = s.undecided_before(root.hit ? root.t : infinity);
+  root.undecided = select(rays, s.undecided_before(select(root.hit, root.t, all_lanes<F>(infinity))), root.undecided);
   return root;
 }

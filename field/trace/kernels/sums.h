@@ -1,19 +1,22 @@
 // Sums over the sources of one level of a block. Part of block_kernels_<set>.cpp.
 
 // At p, with derivatives along the unit vector e (tracing.md 3.1).
+template <class F>
 struct RaySums {
-  float f, df;        // sum w d^-m and its derivative
-  float g[3], dg[3];  // G = grad_S f and its derivative
-  float second;       // sum w d^-(m+2) (M2)
-  float third;        // at least sum m w tau d^-(m+3) (m M3)
+  F f, df;        // sum w d^-m and its derivative
+  F g[3], dg[3];  // G = grad_S f and its derivative
+  F second;       // sum w d^-(m+2) (M2)
+  F third;        // at least sum m w tau d^-(m+3) (m M3)
 };
 
 struct Probe {
   V16 px, py, pz, ex, ey, ez;
 };
 
+// The sums over one list, in lanes of `sums`; what they stand for is told by add_list().
 template <int Exponent>
-inline void add_sums(const float* group, int groups, int exponent, const Probe& probe, V16& nearest, RaySums& out) {
+inline void sum_list(const float* group, int groups, int exponent, const Probe& probe, V16& nearest,
+                     float (&sums)[16]) {
   V16 a[12] = {};
   for (int k = 0; k < groups; ++k, group += floats_per_group) {
     const V16 dx = probe.px - load(group), dy = probe.py - load(group + 16), dz = probe.pz - load(group + 32);
@@ -35,14 +38,16 @@ inline void add_sums(const float* group, int groups, int exponent, const Probe& 
     a[10] += ka * dz;
     nearest = larger(nearest, inv);
   }
-  float s[16];
-  sum_lanes(a, s);
-  const float m = static_cast<float>(Exponent > 0 ? Exponent : exponent);
+  sum_lanes(a, sums);
+}
+
+// Adds the sums of a list of exponent m; e is the direction of the ray.
+template <class F>
+inline void add_list(float m, const F (&s)[16], const F (&e)[3], RaySums<F>& out) {
   out.f += s[0];
   out.df -= m * s[1];
   out.second += s[2];
   out.third += m * root_of(s[3] * s[4]);  // Cauchy-Schwarz: M3^2 <= K2 K4
-  const float e[3] = {probe.ex[0], probe.ey[0], probe.ez[0]};
   for (int i = 0; i < 3; ++i) {
     out.g[i] -= m * s[5 + i];
     out.dg[i] += m * (m + 2) * s[8 + i] - m * e[i] * s[3];
@@ -154,18 +159,66 @@ inline void for_each_list(const FieldLevel& l, int degree, const Sums& sums) {
     }
 }
 
+// For one ray; `nearest` becomes the largest 1 / d^2.
 struct RaySummer {
-  const Probe& probe;
+  const LocalRay& ray;
+  const Probe probe;
   V16& nearest;
-  RaySums& out;
+  RaySums<float>& out;
   template <int Exponent>
   void add(const float* group, int groups, int exponent) const {
-    add_sums<Exponent>(group, groups, exponent, probe, nearest, out);
+    float s[16];
+    sum_list<Exponent>(group, groups, exponent, probe, nearest, s);
+    add_list(static_cast<float>(Exponent > 0 ? Exponent : exponent), s, ray.direction, out);
+  }
+};
+
+// Rows become columns: four times, each row is woven with the one eight below.
+inline void transpose(V16 (&a)[16]) {
+  for (int round = 0; round < 4; ++round) {
+    V16 b[16];
+    for (int i = 0; i < 8; ++i) {
+      b[2 * i] = __builtin_shufflevector(a[i], a[i + 8], 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+      b[2 * i + 1] =
+          __builtin_shufflevector(a[i], a[i + 8], 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
+    }
+    for (int i = 0; i < 16; ++i) a[i] = b[i];
+  }
+}
+
+// For a packet: each ray has its own sums over the sources, in the order of a single ray.
+struct PacketSummer {
+  const V16 (&at)[3];
+  const Ray16& rays;
+  unsigned active;
+  V16& nearest;
+  RaySums<V16>& out;
+
+  template <int Exponent>
+  void add(const float* group, int groups, int exponent) const {
+    V16 s[16] = {};
+    for (unsigned left = active; left != 0; left &= left - 1) {
+      const int lane = __builtin_ctz(left);
+      const Probe probe{splat(at[0][lane]),
+                        splat(at[1][lane]),
+                        splat(at[2][lane]),
+                        splat(rays.direction[0][lane]),
+                        splat(rays.direction[1][lane]),
+                        splat(rays.direction[2][lane])};
+      V16 close{};
+      float row[16];
+      sum_list<Exponent>(group, groups, exponent, probe, close, row);
+      row[15] = largest_lane(close);
+      __builtin_memcpy(&s[lane], row, sizeof row);
+    }
+    transpose(s);
+    add_list(static_cast<float>(Exponent > 0 ? Exponent : exponent), s, rays.direction, out);
+    nearest = larger(nearest, s[15]);
   }
 };
 
 struct AngleSummer {
-  const Probe& probe;
+  const Probe probe;
   AngleSums& out;
   template <int Exponent>
   void add(const float* group, int groups, int exponent) const {

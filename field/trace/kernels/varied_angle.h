@@ -13,11 +13,11 @@ struct VariedAngle {
   SummedShare& last;  // that was summed on the ray
 
   // As Marcher::judge(), with the angle of the place.
-  void judge(Sample& p, const Probe& probe, float y, float dy) const {
+  void judge(Sample& p, const OnRay<float> (&at)[3], float y, float dy) const {
     const float low = nominal_margin_at(table_of_end(block, false), p.s.f, y),
                 high = nominal_margin_at(table_of_end(block, true), p.s.f, y);
     p.summed = {};
-    if (needs_share(low, high)) p.summed = share_at(p, probe);
+    if (needs_share(low, high)) p.summed = share_at(p, at);
     const SummedShare& here = p.summed;
     const IsoValue iso =
         known(p) ? IsoValue(block, here.share + here.slope * (p.t - here.t), here.slope, p.s.f, y, p.s.df, dy)
@@ -47,28 +47,28 @@ struct VariedAngle {
   }
 
   // The one that was summed last serves where it tells this place as well.
-  SummedShare share_at(const Sample& p, const Probe& probe) const {
+  SummedShare share_at(const Sample& p, const OnRay<float> (&at)[3]) const {
     constexpr float known_to = 1e-5F;  // as sums of floats are in any case
     const float h = p.t - last.t;
     if (last.bend * h * h < known_to && abs_of(h) < 0.02F * last.distance) return last;
-    last = level.angle != nullptr ? mean_share(p, probe) : share_of_strands(p, probe);
+    last = level.angle != nullptr ? mean_share(p, at) : share_of_strands(p, at);
     return last;
   }
 
-  SummedShare share_of_strands(const Sample& p, const Probe& probe) const {
-    const float at[3] = {probe.px[0], probe.py[0], probe.pz[0]};
+  SummedShare share_of_strands(const Sample& p, const OnRay<float> (&at)[3]) const {
+    const float place[3] = {at[0].at, at[1].at, at[2].at};
     const float along[1][3] = {{ray.direction[0], ray.direction[1], ray.direction[2]}};
-    const ShareValue<1> value = strand_share(level, block.degree, at, along);
+    const ShareValue<1> value = strand_share(level, block.degree, place, along);
     return {value.share, value.slope[0], value.bend, p.t, p.distance};
   }
 
   // A / f of angle_field.h. With s the share here, D = A - s f is 0 here: bounds of D (B3 of tracing.md, for A and f)
   // over f bound how far A / f moves.
-  SummedShare mean_share(const Sample& p, const Probe& probe) const {
+  SummedShare mean_share(const Sample& p, const OnRay<float> (&at)[3]) const {
     AngleSums a{};
-    for_each_list(*level.angle, block.degree, AngleSummer{probe, a});
-    RaySums far_part{};
-    FarOnRay{*level.angle, ray}.add(p.t, far_part);
+    for_each_list(*level.angle, block.degree, AngleSummer{probe_of(at), a});
+    RaySums<float> far_part{};
+    add_far(*level.angle, at, far_part);
     const float inverse = 1 / max_of(p.s.f, 1e-20F), n = static_cast<float>(block.degree);
     const float share = (a.value + far_part.f) * inverse, second = a.second + share * p.s.second,
                 far_bend = level.angle->far_bend + share * level.far_bend;

@@ -1,18 +1,13 @@
 // Which slots of a cube a ray crosses. Part of block_kernels_<set>.cpp.
 
 // Bit i for each lane i of the first that is set, bit i + 16 for the second.
-inline unsigned bits_of(Index16 first, Index16 second) {
+inline unsigned slot_bits(Index16 first, Index16 second) {
   const Index16 bit{1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
   Index16 v = (first & bit) | (second & (bit << 16));
   v |= __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7);
   v |= __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3);
   return static_cast<unsigned>(v[0] | v[1] | v[2] | v[3]);
 }
-
-// Directions that are 0 in an axis become very small: then no product is 0 times infinity.
-inline float nonzero(float d) { return abs_of(d) > 1e-20F ? d : 1e-20F; }
-
-inline V16 smaller(V16 a, V16 b) { return a < b ? a : b; }
 
 // Where a ray is in the four layers along an axis: the lanes of `low` and `high` name the planes of a layer. Layers
 // share their planes, and so the t of them; the outer ones reach beyond the cube, so that no rounding of its faces cuts
@@ -62,7 +57,7 @@ void walk(std::uint64_t slots, const LocalRay& ray, float t0, float t1, Walk& ou
     plane = next;
     met[k] = larger(enter, splat(z_enter[k])) < smaller(leave, splat(z_leave[k]));
   }
-  std::uint64_t left = bits_of(met[0], met[1]) | static_cast<std::uint64_t>(bits_of(met[2], met[3])) << 32;
+  std::uint64_t left = slot_bits(met[0], met[1]) | static_cast<std::uint64_t>(slot_bits(met[2], met[3])) << 32;
   alignas(64) float column_enter[lanes], column_leave[lanes];
   __builtin_memcpy(column_enter, &enter, sizeof column_enter);
   __builtin_memcpy(column_leave, &leave, sizeof column_leave);

@@ -1,0 +1,142 @@
+// Packets of sixteen rays find what single rays find, to the same bits, on every instruction set.
+#include <array>
+#include <bit>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "field/trace/block_kernels.h"
+#include "tests/trace/first_of_tiles.h"
+#include "tests/trace/random_rays.h"
+
+namespace marrow::test {
+namespace {
+
+using Rays = std::array<Ray, RayPacket::size>;
+
+std::uint64_t bits(double v) { return std::bit_cast<std::uint64_t>(v); }
+
+// Of the pixels of a small picture, as wide as a tenth of a body, through a place near the surface.
+Rays neighbours(Random& random, const BlendField& blend) {
+  const Ray middle = random.whole(0, 1) == 0 ? tangent(random, blend) : chord(random);
+  Rays rays;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const double x = static_cast<double>(i % 4), y = static_cast<double>(i / 4);
+    const Vec3d moved = middle.direction.vec() + Vec3d{0.002 * x, 0.002 * y, -0.001 * y};
+    rays[i] = {middle.origin, normalize(moved)};
+  }
+  return rays;
+}
+
+Rays strangers(Random& random, const BlendField& blend) {
+  Rays rays;
+  for (Ray& ray : rays) ray = any_ray(random, blend);
+  return rays;
+}
+
+// From beside the surface, as shadow rays begin; from anywhere, even inside, where nothing was met.
+Rays leaving(Random& random, const BlendTracer& tracer, const Rays& arriving) {
+  const UnitVec3 light = UnitVec3::unchecked(random_direction(random));
+  Rays rays;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    rays[i] = {random.vector(1.5), UnitVec3::unchecked(random_direction(random))};
+    for (std::size_t tile = 0; tile < tracer.tile_count(); ++tile) {
+      CellLog log;
+      const auto hit = tracer.first_hit(tile, arriving[i], false, log);
+      if (!hit) continue;
+      rays[i] = {tracer.surface_at(*hit->block, arriving[i].at(hit->t)).outside, light};
+      if (random.whole(0, 3) == 0) rays[i].t_max = random.between(0.1, 2);
+      break;
+    }
+  }
+  return rays;
+}
+
+struct Compared {
+  int rays = 0, hits = 0, entered_inside = 0;
+};
+
+void expect_same(const BlendTracer& tracer, const Rays& rays, unsigned asked, bool any, Compared& count) {
+  const RayPacket packet(rays);
+  std::array<double, RayPacket::size> outside_from{};
+  outside_from.fill(std::numeric_limits<double>::infinity());
+  for (const TracePart& part : tracer.parts()) {
+    CellHits found;
+    for (std::size_t i = 0; i < rays.size(); ++i) found.log[i].outside_from = outside_from[i];
+    tracer.first_hits(part, packet, asked, any, found);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (!(asked >> i & 1)) continue;
+      CellLog log;
+      log.outside_from = outside_from[i];
+      const auto expected = tracer.first_hit(part, rays[i], any, log);
+      const CellLog& given = found.log[i];
+      ASSERT_EQ(found.hit[i].block != nullptr, expected.has_value()) << "lane " << i;
+      ASSERT_EQ(given.evaluations, log.evaluations) << "lane " << i;
+      ASSERT_EQ(bits(given.undecided), bits(log.undecided)) << "lane " << i;
+      ASSERT_EQ(given.side, log.side) << "lane " << i;
+      ASSERT_EQ(bits(given.enter), bits(log.enter)) << "lane " << i;
+      ASSERT_EQ(bits(given.outside_from), bits(log.outside_from)) << "lane " << i;
+      count.entered_inside += log.side == CellLog::Side::Inside;
+      outside_from[i] = log.outside_from;
+      if (!expected) continue;
+      ++count.hits;
+      ASSERT_EQ(bits(found.hit[i].t), bits(expected->t)) << "lane " << i;
+      ASSERT_EQ(found.hit[i].block, expected->block) << "lane " << i;
+    }
+  }
+  count.rays += std::popcount(asked);
+}
+
+std::vector<std::string> sets_here() {
+  std::vector<std::string> names;
+  for (const char* name : {"sse4", "avx2", "avx512"})
+    if (block_kernels(name) != nullptr) names.emplace_back(name);
+  return names;
+}
+
+class Packets : public testing::TestWithParam<Setting> {};
+
+TEST_P(Packets, FindWhatSingleRaysFind) {
+  Random random(4711);
+  const BlendField blend = random_scene(random, GetParam(), 7);
+  for (const std::string& set : sets_here()) {
+    auto made = BlendTracer::make(blend, {.instruction_set = set});
+    ASSERT_TRUE(made);
+    const BlendTracer& tracer = **made;
+    for (int i = 0; i < 500; ++i) first_hit(tracer, any_ray(random, blend));  // divides space
+    Compared count;
+    for (int i = 0; i < 40; ++i) {
+      const auto asked = static_cast<unsigned>(random.whole(1, 0xffff));
+      const bool any = random.whole(0, 1) == 0;
+      const Rays near = neighbours(random, blend);
+      expect_same(tracer, near, 0xffff, any, count);
+      expect_same(tracer, near, asked, false, count);
+      expect_same(tracer, leaving(random, tracer, near), 0xffff, any, count);
+      expect_same(tracer, strangers(random, blend), asked, any, count);
+      if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(count.hits, count.rays / 4);
+    EXPECT_GT(count.entered_inside, 0);
+    std::cout << "  " << set << ": " << count.rays << " rays, " << count.hits << " hits in parts, "
+              << count.entered_inside << " found to begin inside\n";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Trace, Packets,
+                         testing::Values(Setting{3, 1.0}, Setting{4, contact_alpha(4)}, Setting{4, -0.4},
+                                         Setting{4, std::numbers::pi / 2}, Setting{5, 0}, Setting{7, 1.2}));
+
+TEST(PacketsOfVariedAngles, FindWhatSingleRaysFind) {
+  Random random(4712);
+  Compared count;
+  for (const BlendField& blend : {random_angled_scene(random, {4, 0}, 5), random_stranded_scene(random, {4, 0}, 5)}) {
+    auto made = BlendTracer::make(blend, {});
+    ASSERT_TRUE(made);
+    for (int i = 0; i < 200; ++i) first_hit(**made, any_ray(random, blend));
+    for (int i = 0; i < 6; ++i) expect_same(**made, neighbours(random, blend), 0xffff, false, count);
+  }
+  EXPECT_GT(count.hits, 0);
+}
+
+}  // namespace
+}  // namespace marrow::test
