@@ -1,8 +1,8 @@
 #include "renderer/geometry/embree_surfaces.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <embree3/rtcore.h>
@@ -11,8 +11,6 @@
 
 namespace marrow {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::vector<SolidPart> whole_elements(const Solid& solid) { return solid.Solid::parts(); }
 
@@ -28,6 +26,8 @@ double area_of(const Box3& box) {
   const Vec3d s = box.size();
   return s.x * s.y + s.y * s.z + s.z * s.x;
 }
+
+unsigned lanes_of(std::span<const Ray> rays) { return (1U << rays.size()) - 1; }
 
 Ray until(const Ray& ray, double t) {
   Ray shorter = ray;
@@ -73,16 +73,13 @@ void EmbreeSurfaces::refine() const {
   if (finer) finest_ = refined_.emplace_back(std::move(*finer)).get();
 }
 
-const PlacedPlane* EmbreeSurfaces::nearest_plane(const Ray& ray, double& t) const {
-  const PlacedPlane* best = nullptr;
+EmbreeSurfaces::PlaneHit EmbreeSurfaces::nearest_plane(const Ray& ray) const {
+  PlaneHit best;
   for (const PlacedPlane& p : planes_) {
     const double slope = dot(p.normal, ray.direction);
     if (slope == 0) continue;
     const double at = dot(p.point - ray.origin, p.normal) / slope;
-    if (at >= ray.t_min && at <= ray.t_max && at < t) {
-      t = at;
-      best = &p;
-    }
+    if (at >= ray.t_min && at <= ray.t_max && at < best.t) best = {&p, at};
   }
   return best;
 }
@@ -98,8 +95,8 @@ bool EmbreeSurfaces::Division::is_like(const Division& b) const {
          std::fabs(area - b.area) <= much * b.area;
 }
 
-std::optional<SurfaceHit> EmbreeSurfaces::hit_of(const PartHierarchy::Hit& found, const PlacedPlane* plane,
-                                                 double plane_t, const Ray& ray) const {
+std::optional<SurfaceHit> EmbreeSurfaces::hit_of(const PartHierarchy::Hit& found, const PlaneHit& behind,
+                                                 const Ray& ray) const {
   SurfaceHit hit;
   if (found.found) {
     const PlacedSolid& placed = solids_[found.solid];
@@ -109,9 +106,10 @@ std::optional<SurfaceHit> EmbreeSurfaces::hit_of(const PartHierarchy::Hit& found
     placed.solid->describe(found.element, found.place, ray, hit);
     return hit;
   }
+  const auto& [plane, t] = behind;
   if (plane == nullptr) return {};
-  hit.t = plane_t;
-  hit.position = ray.at(plane_t);
+  hit.t = t;
+  hit.position = ray.at(t);
   hit.normal = dot(plane->normal, ray.direction) <= 0 ? plane->normal : -plane->normal;
   hit.outside = lifted(hit.position, plane->point, hit.normal);
   hit.object = plane->object;
@@ -120,27 +118,46 @@ std::optional<SurfaceHit> EmbreeSurfaces::hit_of(const PartHierarchy::Hit& found
 }
 
 std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray) const {
-  double plane_t = infinity;
-  const PlacedPlane* plane = nearest_plane(ray, plane_t);
-  const Ray before_plane = until(ray, plane_t);
+  const PlaneHit plane = nearest_plane(ray);
+  const Ray before_plane = until(ray, plane.t);
   PartHierarchy::Hit found = finest().first_hit(before_plane, nullptr);
   if (found.begins_inside) found = whole_->first_hit(before_plane, nullptr);
-  return hit_of(found, plane, plane_t, ray);
+  return hit_of(found, plane, ray);
 }
 
 std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray, RayRecord& record) const {
   thread_local std::vector<ElementLog> visits;
   visits.clear();
-  double plane_t = infinity;
-  const PlacedPlane* plane = nearest_plane(ray, plane_t);
-  const PartHierarchy::Hit found = whole_->first_hit(until(ray, plane_t), &visits);
-  record = record_of(visits, found.undecided, std::min(found.t, plane_t));
-  return hit_of(found, plane, plane_t, ray);
+  const PlaneHit plane = nearest_plane(ray);
+  const PartHierarchy::Hit found = whole_->first_hit(until(ray, plane.t), &visits);
+  record = record_of(visits, found.undecided, std::min(found.t, plane.t));
+  return hit_of(found, plane, ray);
 }
 
 bool EmbreeSurfaces::occluded(const Ray& ray) const {
-  double plane_t = infinity;
-  return nearest_plane(ray, plane_t) != nullptr || finest().occluded(ray);
+  return nearest_plane(ray).plane != nullptr || finest().occluded(ray);
+}
+
+void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits) const {
+  std::array<PlaneHit, RayPacket::size> planes;
+  RayPacket before_planes(rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    planes[i] = nearest_plane(rays[i]);
+    before_planes.t_max[i] = std::min(rays[i].t_max, planes[i].t);
+  }
+  PartHierarchy::Hits found;
+  finest().first_hits(before_planes, lanes_of(rays), found);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (found[i].begins_inside) found[i] = whole_->first_hit(before_planes.ray(static_cast<int>(i)), nullptr);
+    hits[i] = hit_of(found[i], planes[i], rays[i]);
+  }
+}
+
+unsigned EmbreeSurfaces::which_occluded(std::span<const Ray> rays) const {
+  unsigned by_planes = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    by_planes |= static_cast<unsigned>(nearest_plane(rays[i]).plane != nullptr) << i;
+  return by_planes | finest().occluded(RayPacket(rays), lanes_of(rays) & ~by_planes);
 }
 
 }  // namespace marrow

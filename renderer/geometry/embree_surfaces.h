@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -36,6 +37,8 @@ class EmbreeSurfaces final : public Surfaces {
   std::optional<SurfaceHit> first_hit(const Ray&) const override;
   std::optional<SurfaceHit> first_hit(const Ray&, RayRecord&) const override;
   bool occluded(const Ray&) const override;
+  void first_hits(std::span<const Ray>, std::span<std::optional<SurfaceHit>>) const override;
+  unsigned which_occluded(std::span<const Ray>) const override;
   Box3 bounds() const override { return extent_; }
   void refine() const override;
 
@@ -52,9 +55,14 @@ class EmbreeSurfaces final : public Surfaces {
     void add(const std::vector<SolidPart>&);
     bool is_like(const Division&) const;
   };
-  const PlacedPlane* nearest_plane(const Ray&, double& t) const;
+  // The plane is null when there is none on the ray; t is infinity then.
+  struct PlaneHit {
+    const PlacedPlane* plane = nullptr;
+    double t = std::numeric_limits<double>::infinity();
+  };
+  PlaneHit nearest_plane(const Ray&) const;
   const PartHierarchy& finest() const { return *finest_.load(std::memory_order_acquire); }
-  std::optional<SurfaceHit> hit_of(const PartHierarchy::Hit&, const PlacedPlane*, double plane_t, const Ray&) const;
+  std::optional<SurfaceHit> hit_of(const PartHierarchy::Hit&, const PlaneHit&, const Ray&) const;
 
   std::vector<PlacedSolid> solids_;
   std::vector<PlacedPlane> planes_;

@@ -1,8 +1,9 @@
 #include "renderer/geometry/part_hierarchy.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 #include <embree3/rtcore.h>
@@ -14,36 +15,21 @@ void EmbreeRelease::operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene)
 
 namespace {
 
-// Rides with the ray through Embree and keeps everything in double.
+// Below so many rays a packet costs more than it shares.
+constexpr int worth_a_packet = 3;
+
+// Rides with the rays through Embree; a single ray is in lane 0 of no packet. Embree names a ray by its lane.
 struct Query : RTCIntersectContext {
-  explicit Query(const Ray& r) : ray(r), inverse{1 / r.direction.x(), 1 / r.direction.y(), 1 / r.direction.z()} {
+  Query(PartVisit* of_lanes, const RayPacket* of_rays) : visits(of_lanes), packet(of_rays) {
     rtcInitIntersectContext(this);
   }
-  const Ray& ray;
-  Vec3d inverse;       // of the direction
-  double t_start = 0;  // where Embree's ray begins on ours
-  PartHierarchy::Hit best;
-  double outside_from = std::numeric_limits<double>::infinity();  // ElementLog's, of this solid
-  const Solid* outside_of = nullptr;
-  std::vector<ElementLog>* visits = nullptr;
+  PartVisit* visits;
+  const RayPacket* packet;
 };
 
-// Whether the ray comes into a box before t: Embree asks for all boxes of a leaf when it has met one. A ray exactly in
-// the plane of a padded face gives NaN and may count either way; what the box is padded for is not there.
-bool enters(const Query& q, const Box3& box, double t) {
-  double enter = q.ray.t_min, exit = t;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double a = (box.lower[i] - q.ray.origin[i]) * q.inverse[i],
-                 b = (box.upper[i] - q.ray.origin[i]) * q.inverse[i];
-    enter = std::max(enter, std::min(a, b));
-    exit = std::min(exit, std::max(a, b));
-  }
-  return enter <= exit;
-}
-
 // Embree's t of a hit, never before the hit itself: a box that holds a nearer one must not be skipped.
-float embree_t(const Query& q, double t) {
-  return std::nextafter(static_cast<float>((t - q.t_start) * (1 + 1e-6)), std::numeric_limits<float>::infinity());
+float embree_t(const PartVisit& v, double t) {
+  return std::nextafter(static_cast<float>((t - v.t_start) * (1 + 1e-6)), std::numeric_limits<float>::infinity());
 }
 
 const PartsOfSolid& parts_of(void* user_data) { return *static_cast<const PartsOfSolid*>(user_data); }
@@ -60,47 +46,66 @@ void bounds_callback(const RTCBoundsFunctionArguments* a) {
 
 constexpr float done = -std::numeric_limits<float>::infinity();  // nothing more is asked of a ray
 
+// Embree has met the box of a leaf and asks for all parts in it: which rays come into this one, and where each of them
+// is in Embree's arrays, which may be those of the packet or of a single ray of it.
+struct Asked {
+  unsigned lanes = 0;
+  std::array<unsigned, RayPacket::size> at;
+};
+
+Asked asked_of(const Query& q, const SolidPart& part, const int* valid, RTCRayN* rays, unsigned count) {
+  Asked asked;
+  for (unsigned i = 0; i < count; ++i) {
+    if (valid[i] == 0) continue;
+    const unsigned lane = RTCRayN_id(rays, count, i);
+    if (!q.visits[lane].enters(part.box)) continue;
+    asked.lanes |= 1U << lane;
+    asked.at[lane] = i;
+  }
+  return asked;
+}
+
+// Asks a part for some lanes; `take` gets lane, t (infinity: no hit) and log of each.
+template <class Take>
+void ask(const Query& q, const Solid& solid, const SolidPart& part, unsigned lanes, bool any, const Take& take) {
+  if (std::has_single_bit(lanes)) {
+    const int lane = std::countr_zero(lanes);
+    const PartVisit& visit = q.visits[lane];
+    ElementLog log = visit.before(solid);
+    const auto t = solid.hit_in_part(part, visit.ray, any, log);
+    take(static_cast<std::size_t>(lane), t.value_or(std::numeric_limits<double>::infinity()), log);
+    return;
+  }
+  PacketLog log;
+  for_each_lane(lanes, [&](std::size_t lane) { log.lanes[lane] = q.visits[lane].before(solid); });
+  solid.hits_in_part(part, *q.packet, lanes, any, log);
+  for_each_lane(lanes, [&](std::size_t lane) { take(lane, log.t[lane], log.lanes[lane]); });
+}
+
 void intersect_callback(const RTCIntersectFunctionNArguments* a) {
-  if (a->valid[0] == 0) return;
-  auto& q = *static_cast<Query*>(a->context);
+  const auto& q = *static_cast<const Query*>(a->context);
   const PartsOfSolid& solid = parts_of(a->geometryUserPtr);
   const SolidPart& part = solid.parts[a->primID];
-  if (!enters(q, part.box, q.best.t)) return;
-  auto* rayhit = reinterpret_cast<RTCRayHit*>(a->rayhit);
-  ElementLog log;
-  if (q.outside_of == solid.solid) log.outside_from = q.outside_from;
-  const auto t = solid.solid->hit_in_part(part, q.ray, false, log);
-  q.outside_of = solid.solid;
-  q.outside_from = log.outside_from;
-  if (q.visits != nullptr && log.evaluations > 0) q.visits->push_back(log);
-  q.best.undecided = std::min(q.best.undecided, log.undecided);
-  if (log.begins_inside) {
-    q.best.begins_inside = true;
-    rayhit->ray.tfar = done;
-  }
-  if (!t || *t > q.best.t) return;
-  const std::size_t index = a->geomID;
-  if (*t == q.best.t &&
-      std::tuple(index, part.element, log.enter) > std::tuple(q.best.solid, q.best.element, q.best.enter))
-    return;
-  q.best.t = *t;
-  q.best.solid = index;
-  q.best.element = part.element;
-  q.best.enter = log.enter;
-  q.best.place = log.place;
-  q.best.found = true;
-  rayhit->ray.tfar = embree_t(q, *t);
-  rayhit->hit.geomID = a->geomID;
-  rayhit->hit.primID = a->primID;
+  RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
+  const Asked asked = asked_of(q, part, a->valid, rays, a->N);
+  if (asked.lanes == 0) return;
+  ask(q, *solid.solid, part, asked.lanes, false, [&](std::size_t lane, double t, const ElementLog& log) {
+    PartVisit& visit = q.visits[lane];
+    float& t_far = RTCRayN_tfar(rays, a->N, asked.at[lane]);
+    if (visit.take(a->geomID, *solid.solid, part, t, log)) t_far = embree_t(visit, t);
+    if (log.begins_inside) t_far = done;
+  });
 }
 
 void occluded_callback(const RTCOccludedFunctionNArguments* a) {
-  if (a->valid[0] == 0) return;
   const auto& q = *static_cast<const Query*>(a->context);
   const PartsOfSolid& solid = parts_of(a->geometryUserPtr);
-  ElementLog log;
-  if (solid.solid->hit_in_part(solid.parts[a->primID], q.ray, true, log))
-    reinterpret_cast<RTCRay*>(a->ray)->tfar = done;
+  const SolidPart& part = solid.parts[a->primID];
+  const Asked asked = asked_of(q, part, a->valid, a->ray, a->N);
+  if (asked.lanes == 0) return;
+  ask(q, *solid.solid, part, asked.lanes, true, [&](std::size_t lane, double t, const ElementLog&) {
+    if (t < std::numeric_limits<double>::infinity()) RTCRayN_tfar(a->ray, a->N, asked.at[lane]) = done;
+  });
 }
 
 // The part of a ray inside a box; false when it misses.
@@ -120,20 +125,37 @@ bool clip(const Box3& box, const Ray& ray, double& t0, double& t1) {
   return t0 <= t1;
 }
 
-RTCRay to_embree(const Query& q, double t_end) {
-  const Vec3d origin = q.ray.at(q.t_start);
-  RTCRay r{};
-  r.org_x = static_cast<float>(origin.x);
-  r.org_y = static_cast<float>(origin.y);
-  r.org_z = static_cast<float>(origin.z);
-  r.dir_x = static_cast<float>(q.ray.direction.x());
-  r.dir_y = static_cast<float>(q.ray.direction.y());
-  r.dir_z = static_cast<float>(q.ray.direction.z());
-  r.tnear = 0;
-  r.tfar = embree_t(q, t_end);
-  r.mask = ~0U;
-  return r;
+// Makes the ray ready for Embree, as the given one of N; false when it misses all boxes.
+bool start(const Box3& bounds, PartVisit& visit, RTCRayN* rays, unsigned count, unsigned lane) {
+  double t_end = 0;
+  if (!clip(bounds, visit.ray, visit.t_start, t_end)) return false;
+  const Vec3d origin = visit.ray.at(visit.t_start);
+  RTCRayN_org_x(rays, count, lane) = static_cast<float>(origin.x);
+  RTCRayN_org_y(rays, count, lane) = static_cast<float>(origin.y);
+  RTCRayN_org_z(rays, count, lane) = static_cast<float>(origin.z);
+  RTCRayN_dir_x(rays, count, lane) = static_cast<float>(visit.ray.direction.x());
+  RTCRayN_dir_y(rays, count, lane) = static_cast<float>(visit.ray.direction.y());
+  RTCRayN_dir_z(rays, count, lane) = static_cast<float>(visit.ray.direction.z());
+  RTCRayN_tfar(rays, count, lane) = embree_t(visit, t_end);
+  RTCRayN_mask(rays, count, lane) = ~0U;
+  RTCRayN_id(rays, count, lane) = lane;
+  return true;
 }
+
+// A packet of rays on their way. Where Embree has no packets of sixteen it takes rays by their intervals, whatever
+// `valid` says: those that are not to be asked get none.
+struct Starts {
+  Starts(const Box3& bounds, const RayPacket& packet, unsigned lanes, RTCRay16& rays) {
+    auto* of_any_count = reinterpret_cast<RTCRayN*>(&rays);
+    std::fill_n(rays.tfar, RayPacket::size, done);
+    for_each_lane(lanes, [&](std::size_t lane) {
+      visits[lane] = PartVisit(packet.ray(static_cast<int>(lane)));
+      if (start(bounds, visits[lane], of_any_count, RayPacket::size, static_cast<unsigned>(lane))) valid[lane] = -1;
+    });
+  }
+  alignas(64) std::array<int, RayPacket::size> valid{};
+  std::array<PartVisit, RayPacket::size> visits;
+};
 
 void attach(RTCDevice device, RTCScene scene, PartsOfSolid& p) {
   RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
@@ -168,25 +190,57 @@ Result<std::unique_ptr<PartHierarchy>> PartHierarchy::make(RTCDeviceTy* device, 
 }
 
 PartHierarchy::Hit PartHierarchy::first_hit(const Ray& ray, std::vector<ElementLog>* visits) const {
-  Query q(ray);
-  q.visits = visits;
-  double t_end = 0;
-  if (!clip(padded_bounds_, ray, q.t_start, t_end)) return {};
+  PartVisit visit(ray);
+  visit.visits = visits;
   RTCRayHit rayhit{};
-  rayhit.ray = to_embree(q, t_end);
+  if (!start(padded_bounds_, visit, reinterpret_cast<RTCRayN*>(&rayhit.ray), 1, 0)) return {};
   rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  Query q(&visit, nullptr);
   rtcIntersect1(scene_.get(), &q, &rayhit);
-  return q.best;
+  return visit.best;
 }
 
 bool PartHierarchy::occluded(const Ray& ray) const {
-  Query q(ray);
-  double t_end = 0;
-  if (!clip(padded_bounds_, ray, q.t_start, t_end)) return false;
-  RTCRay r = to_embree(q, t_end);
+  PartVisit visit(ray);
+  RTCRay r{};
+  if (!start(padded_bounds_, visit, reinterpret_cast<RTCRayN*>(&r), 1, 0)) return false;
+  Query q(&visit, nullptr);
   rtcOccluded1(scene_.get(), &q, &r);
   return r.tfar < 0;
+}
+
+void PartHierarchy::first_hits(const RayPacket& packet, unsigned lanes, Hits& hits) const {
+  if (std::popcount(lanes) < worth_a_packet) {
+    for_each_lane(lanes,
+                  [&](std::size_t lane) { hits[lane] = first_hit(packet.ray(static_cast<int>(lane)), nullptr); });
+    return;
+  }
+  RTCRayHit16 rayhits{};
+  Starts starts(padded_bounds_, packet, lanes, rayhits.ray);
+  std::fill_n(rayhits.hit.geomID, RayPacket::size, RTC_INVALID_GEOMETRY_ID);
+  std::fill_n(rayhits.hit.instID[0], RayPacket::size, RTC_INVALID_GEOMETRY_ID);
+  Query q(starts.visits.data(), &packet);
+  rtcIntersect16(starts.valid.data(), scene_.get(), &q, &rayhits);
+  for_each_lane(lanes, [&](std::size_t lane) { hits[lane] = starts.visits[lane].best; });
+}
+
+unsigned PartHierarchy::occluded(const RayPacket& packet, unsigned lanes) const {
+  unsigned hidden = 0;
+  if (std::popcount(lanes) < worth_a_packet) {
+    for_each_lane(lanes, [&](std::size_t lane) {
+      hidden |= static_cast<unsigned>(occluded(packet.ray(static_cast<int>(lane)))) << lane;
+    });
+    return hidden;
+  }
+  RTCRay16 rays{};
+  Starts starts(padded_bounds_, packet, lanes, rays);
+  Query q(starts.visits.data(), &packet);
+  rtcOccluded16(starts.valid.data(), scene_.get(), &q, &rays);
+  for_each_lane(lanes, [&](std::size_t lane) {
+    hidden |= static_cast<unsigned>(starts.valid[lane] != 0 && rays.tfar[lane] < 0) << lane;
+  });
+  return hidden;
 }
 
 std::size_t PartHierarchy::part_count() const {

@@ -5,12 +5,13 @@
 // lose a box, on any instruction set; ray origins are moved up to the boxes' bounds to keep M its own size.
 #pragma once
 
-#include <limits>
+#include <array>
 #include <memory>
 #include <vector>
 
 #include "field/base/result.h"
 #include "renderer/geometry/embree_handles.h"
+#include "renderer/geometry/part_visit.h"
 #include "renderer/geometry/solid.h"
 
 namespace marrow {
@@ -26,18 +27,16 @@ class PartHierarchy {
  public:
   static Result<std::unique_ptr<PartHierarchy>> make(RTCDeviceTy* device, std::vector<PartsOfSolid> solids);
 
-  struct Hit {
-    double t = std::numeric_limits<double>::infinity();
-    std::size_t solid = 0, element = 0;
-    const void* place = nullptr;                                 ///< null: no hit
-    double enter = 0;                                            ///< where the ray came into the part
-    double undecided = std::numeric_limits<double>::infinity();  ///< of any part that was visited
-    bool found = false, begins_inside = false;  ///< begins_inside: as in ElementLog; then the hit is not one
-  };
+  using Hit = PartHit;
+  using Hits = std::array<Hit, RayPacket::size>;
   /// The smallest t wins; at equal t the lower solid, the lower element, the part entered first: the order of traversal
   /// shows nowhere. `visits`, if any, is told of all parts visited.
   Hit first_hit(const Ray&, std::vector<ElementLog>* visits) const;
   bool occluded(const Ray&) const;
+  /// The same for the rays of `lanes` (bit i is lane i), to the same bits; `hits` of other lanes are left as they are.
+  void first_hits(const RayPacket&, unsigned lanes, Hits& hits) const;
+  /// Those of `lanes` that are occluded.
+  unsigned occluded(const RayPacket&, unsigned lanes) const;
   std::size_t part_count() const;
 
  private:

@@ -1,6 +1,8 @@
 // A part of a scene whose space is divided into boxed elements: what one Embree geometry holds.
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -10,6 +12,7 @@
 #include "field/base/id.h"
 #include "field/math/box3.h"
 #include "field/math/ray.h"
+#include "field/math/ray_packet.h"
 #include "renderer/geometry/surfaces.h"
 
 namespace marrow {
@@ -22,6 +25,18 @@ struct ElementLog {
   const void* place = nullptr;                                    ///< of a hit in the element, for describe()
   double outside_from = std::numeric_limits<double>::infinity();  ///< CellLog's, from part to part of one solid
   bool begins_inside = false;  ///< of a part: the ray begins inside, and elements have to be asked instead
+};
+
+/// `lanes` of a packet as bits, lane i as bit i; calls body(i) for each.
+template <class Body>
+void for_each_lane(unsigned lanes, const Body& body) {
+  for (unsigned left = lanes; left != 0; left &= left - 1) body(static_cast<std::size_t>(std::countr_zero(left)));
+}
+
+/// What the rays of a packet did in a part, lane by lane.
+struct PacketLog {
+  std::array<double, RayPacket::size> t;          ///< of the hit; infinity: none
+  std::array<ElementLog, RayPacket::size> lanes;  ///< in: as for a single ray
 };
 
 /// A part of an element, as far as it is known where in the element surface can be.
@@ -49,6 +64,8 @@ class Solid {
   virtual std::optional<double> hit_in_part(const SolidPart& part, const Ray& ray, bool any, ElementLog& log) const {
     return hit(part.element, ray, any, log);
   }
+  /// hit_in_part() for the rays of `lanes` (bit i is lane i), to the same bits; `log` is of these lanes only.
+  virtual void hits_in_part(const SolidPart&, const RayPacket&, unsigned lanes, bool any, PacketLog& log) const;
   /// Fills normal, outside and material of a hit whose position is known; `place` as hit() told it.
   virtual void describe(std::size_t element, const void* place, const Ray&, SurfaceHit&) const = 0;
   virtual std::size_t primitive_count() const = 0;
@@ -59,6 +76,14 @@ inline std::vector<SolidPart> Solid::parts() const {
   std::vector<SolidPart> parts(element_count());
   for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = {.element = i, .box = element_box(i)};
   return parts;
+}
+
+inline void Solid::hits_in_part(const SolidPart& part, const RayPacket& packet, unsigned lanes, bool any,
+                                PacketLog& log) const {
+  for_each_lane(lanes, [&](std::size_t lane) {
+    const auto t = hit_in_part(part, packet.ray(static_cast<int>(lane)), any, log.lanes[lane]);
+    log.t[lane] = t.value_or(std::numeric_limits<double>::infinity());
+  });
 }
 
 }  // namespace marrow

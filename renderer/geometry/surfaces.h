@@ -1,8 +1,10 @@
 // What light transport asks of geometry: nearest hit, and whether anything is in the way.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "field/base/id.h"
 #include "field/math/box3.h"
@@ -39,6 +41,17 @@ class Surfaces {
   virtual std::optional<SurfaceHit> first_hit(const Ray&, RayRecord&) const = 0;
   /// Whether any surface lies on the ray within its interval.
   virtual bool occluded(const Ray&) const = 0;
+  /// What first_hit() finds for each of at most RayPacket::size rays, to the same bits. Sooner where they are
+  /// neighbours.
+  virtual void first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits) const {
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = first_hit(rays[i]);
+  }
+  /// What occluded() says of each of at most RayPacket::size rays: bit i is of rays[i].
+  virtual unsigned which_occluded(std::span<const Ray> rays) const {
+    unsigned hidden = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) hidden |= static_cast<unsigned>(occluded(rays[i])) << i;
+    return hidden;
+  }
   /// Of all finite objects; planes do not count. Empty when there are none.
   virtual Box3 bounds() const = 0;
   /// Uses what earlier rays have found for a finer division of space: later rays get the same answers, sooner. To be

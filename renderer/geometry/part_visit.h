@@ -1,0 +1,77 @@
+// What a ray keeps on its way from part to part: in double, whatever floats the search of boxes goes by.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+#include "renderer/geometry/solid.h"
+
+namespace marrow {
+
+/// The nearest hit among the parts of solids.
+struct PartHit {
+  double t = std::numeric_limits<double>::infinity();
+  std::size_t solid = 0, element = 0;
+  const void* place = nullptr;                                 ///< ElementLog's
+  double enter = 0;                                            ///< where the ray came into the part
+  double undecided = std::numeric_limits<double>::infinity();  ///< of any part that was visited
+  bool found = false, begins_inside = false;  ///< begins_inside: as in ElementLog; then the hit is not one
+};
+
+class PartVisit {
+ public:
+  PartVisit() = default;
+  explicit PartVisit(const Ray& r) : ray(r), inverse_{1 / r.direction.x(), 1 / r.direction.y(), 1 / r.direction.z()} {}
+
+  Ray ray;
+  double t_start = 0;  ///< where the search of boxes begins on the ray
+  PartHit best;
+  std::vector<ElementLog>* visits = nullptr;  ///< told of all parts, if there is one
+
+  /// Whether the ray comes into a box before the best hit. A ray exactly in the plane of a padded face gives NaN and
+  /// may count either way; what the box is padded for is not there.
+  bool enters(const Box3& box) const {
+    double enter = ray.t_min, exit = best.t;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double a = (box.lower[i] - ray.origin[i]) * inverse_[i], b = (box.upper[i] - ray.origin[i]) * inverse_[i];
+      enter = std::max(enter, std::min(a, b));
+      exit = std::min(exit, std::max(a, b));
+    }
+    return enter <= exit;
+  }
+
+  /// What a part of the solid is told of the ray.
+  ElementLog before(const Solid& solid) const {
+    ElementLog log;
+    if (outside_of_ == &solid) log.outside_from = outside_from_;
+    return log;
+  }
+
+  /// Takes in what a part answered; t is infinity when it holds no hit. Whether `best` is a new hit.
+  bool take(std::size_t index, const Solid& solid, const SolidPart& part, double t, const ElementLog& log) {
+    outside_of_ = &solid;
+    outside_from_ = log.outside_from;
+    if (visits != nullptr && log.evaluations > 0) visits->push_back(log);
+    best.undecided = std::min(best.undecided, log.undecided);
+    best.begins_inside |= log.begins_inside;
+    if (!(t < std::numeric_limits<double>::infinity()) || t > best.t) return false;
+    if (t == best.t && std::tuple(index, part.element, log.enter) > std::tuple(best.solid, best.element, best.enter))
+      return false;
+    best.t = t;
+    best.solid = index;
+    best.element = part.element;
+    best.enter = log.enter;
+    best.place = log.place;
+    best.found = true;
+    return true;
+  }
+
+ private:
+  Vec3d inverse_;  // of the direction
+  const Solid* outside_of_ = nullptr;
+  double outside_from_ = std::numeric_limits<double>::infinity();  // ElementLog's, of that solid
+};
+
+}  // namespace marrow

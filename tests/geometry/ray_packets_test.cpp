@@ -1,0 +1,164 @@
+// Rays asked side by side get what each gets alone, to the last bit.
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "renderer/geometry/mesh_solid.h"
+#include "renderer/geometry/tree_solid.h"
+#include "tests/geometry/scene_of_solids.h"
+
+namespace marrow::test {
+namespace {
+
+using Hits = std::array<std::optional<SurfaceHit>, RayPacket::size>;
+using Rays = std::vector<Ray>;
+
+MeshShape shards(Random& random) {
+  MeshShape mesh;
+  for (std::uint32_t i = 0; i < 90; i += 3) {
+    const Vec3d at = random.vector(2);
+    for (int k = 0; k < 3; ++k) mesh.positions.push_back(at + random.vector(0.4));
+    mesh.triangles.push_back({i, i + 1, i + 2});
+  }
+  return mesh;
+}
+
+// Everything that rays can meet: blends in the world's coordinates and in their own, one at several places, a general
+// tree, triangles, planes.
+std::unique_ptr<EmbreeSurfaces> everything(Random& random, const BlendField& blend, const std::string& config) {
+  const Affine bend = Affine::translate(random.vector(1)) *
+                      Affine::rotate(normalize(random_direction(random)), random.between(0, 3)) *
+                      Affine::scale({random.between(0.4, 1), random.between(0.8, 1.6), -random.between(0.5, 1.3)});
+  std::vector<PlacedSolid> solids;
+  const auto add = [&](std::unique_ptr<Solid> solid) { solids.push_back({std::move(solid), ObjectId{solids.size()}}); };
+  auto first = std::move(*FieldSolid::make(placed(blend), MaterialId{1}, {}));
+  add(first->placed_again(placed(blend, bend), MaterialId{2}));
+  add(first->placed_again(placed(blend, Affine::translate(random.vector(2))), MaterialId{3}));
+  add(std::move(first));
+  add(std::move(*FieldSolid::make(placed(random_scene(random, {3, 1.2}, 3), bend), MaterialId{4}, {})));
+  add(std::move(*TreeSolid::make(tree_of(placed(random_scene(random, {4, 0.7}, 2))), MaterialId{5})));
+  add(std::make_unique<MeshSolid>(shards(random), MaterialId{6}));
+  std::vector<PlacedPlane> planes{{{0, -2, 0}, UnitVec3::unchecked({0, 1, 0}), MaterialId{7}, ObjectId{solids.size()}},
+                                  {{3, 0, 0}, normalize(Vec3d{-1, 0.3, 0.2}), MaterialId{8}, ObjectId{7}}};
+  return std::move(*EmbreeSurfaces::make(std::move(solids), std::move(planes), config));
+}
+
+// Sixteen rays through neighbouring points, from a place or side by side.
+Rays of_a_camera(Random& random) {
+  const Vec3d target = random.vector(1.6), eye = random_direction(random) * (random.between(0, 1) < 0.2 ? 1e5 : 7);
+  const Frame frame = Frame::around(normalize(eye - target));
+  const double spacing = std::exp2(random.between(-12, -1));
+  const bool parallel = random.between(0, 1) < 0.3;
+  Rays rays;
+  for (int i = 0; i < RayPacket::size; ++i) {
+    const Vec3d aside = frame.to_world({spacing * (i % 4), spacing * (i / 4), 0});
+    rays.push_back(parallel ? Ray{eye + aside, -frame.z} : between(eye, target + aside));
+  }
+  return rays;
+}
+
+// From where other rays met something, toward the sun.
+Rays of_shadows(Random& random, const Surfaces& surfaces) {
+  const UnitVec3 toward_sun = normalize(random_direction(random));
+  Rays rays;
+  for (const Ray& ray : of_a_camera(random))
+    if (const auto hit = surfaces.first_hit(ray)) rays.push_back({hit->outside, toward_sun});
+  return rays;
+}
+
+// With ends and beginnings anywhere: at the hit and just before it, inside of bodies.
+Rays of_all_kinds(Random& random, const Surfaces& surfaces, const BlendField& blend) {
+  Rays rays = of_a_camera(random);
+  for (Ray& ray : rays) {
+    const double kind = random.between(0, 1);
+    if (kind < 0.3) ray = any_ray(random, blend);
+    if (kind < 0.1) ray.origin = random.vector(1.5);
+    const auto hit = surfaces.first_hit(ray);
+    const double t = hit ? hit->t : random.between(0, 10), end = random.between(0, 1);
+    if (end < 0.2) ray.t_max = end < 0.1 ? t : std::nextafter(t, 0.0);
+    else if (end < 0.4) ray.t_min = t * random.between(0.5, 1.1);
+  }
+  return rays;
+}
+
+struct Comparison {
+  int rays = 0, hits = 0, hidden = 0, differ = 0;
+
+  void check(const Surfaces& surfaces, std::span<const Ray> batch) {
+    Hits found;
+    surfaces.first_hits(batch, found);
+    const unsigned occluded = surfaces.which_occluded(batch);
+    EXPECT_EQ(occluded >> batch.size(), 0u);
+    for (std::size_t i = 0; i < batch.size(); ++i, ++rays) {
+      const auto expected = surfaces.first_hit(batch[i]);
+      const bool hides = surfaces.occluded(batch[i]);
+      hits += expected.has_value();
+      hidden += hides;
+      differ += !same(expected, found[i]) || hides != static_cast<bool>(occluded >> i & 1);
+    }
+  }
+  static bool same(const std::optional<SurfaceHit>& a, const std::optional<SurfaceHit>& b) {
+    if (!a || !b) return a.has_value() == b.has_value();
+    return a->t == b->t && a->position == b->position && a->normal == b->normal && a->outside == b->outside &&
+           a->object == b->object && a->material == b->material;
+  }
+  void report(const std::string& title) const {
+    std::cout << "  " << title << ": " << rays << " rays, " << hits << " hits, " << hidden << " hidden, " << differ
+              << " differ\n";
+    EXPECT_EQ(differ, 0) << title;
+    EXPECT_GT(hits, rays / 5) << title;
+    EXPECT_LT(hits, rays) << title;
+  }
+};
+
+// Packets of sixteen, eight and four in Embree, and from whole elements down to single cells.
+TEST(RayPackets, EqualSingleRays) {
+  for (const std::string isa : {"sse4.2", "avx2", "avx512"}) {
+    Random random(131);
+    Comparison camera, shadows, mixed, few;
+    const BlendField blend = random_scene(random, {4, contact_alpha(4)}, 5);
+    const auto surfaces = everything(random, blend, "threads=1,max_isa=" + isa);
+    for (int i = 0; i < 400; ++i) {
+      if (i % 60 == 59) surfaces->refine();
+      camera.check(*surfaces, of_a_camera(random));
+      shadows.check(*surfaces, of_shadows(random, *surfaces));
+      const Rays rays = of_all_kinds(random, *surfaces, blend);
+      mixed.check(*surfaces, rays);
+      few.check(*surfaces, std::span(rays).first(static_cast<std::size_t>(random.whole(0, 5))));
+    }
+    camera.report(isa + ", of a camera");
+    shadows.report(isa + ", of shadows");
+    mixed.report(isa + ", of all kinds");
+    few.report(isa + ", of few rays");
+  }
+}
+
+// Coordinates of which floats keep four digits behind the point.
+TEST(RayPackets, EqualSingleRaysFarFromTheOrigin) {
+  Random random(132);
+  Comparison all;
+  const Vec3d away{1000, 1000, -1000};
+  const BlendField blend = random_scene(random, {4, 0.3}, 5);
+  const SolidScene scene({placed(moved(blend, away))});
+  for (int i = 0; i < 1000; ++i) {
+    if (i % 200 == 199) scene.surfaces().refine();
+    Rays rays = of_a_camera(random);
+    for (Ray& ray : rays) ray = moved(ray, away);
+    all.check(scene.surfaces(), rays);
+  }
+  all.report("1000 away from the origin");
+}
+
+TEST(RayPackets, OfNothingHitNothing) {
+  const auto made = EmbreeSurfaces::make({}, {}, "threads=1");
+  ASSERT_TRUE(made);
+  const std::vector<Ray> rays(RayPacket::size, Ray{{0, 0, 5}, UnitVec3::unchecked({0, 0, -1})});
+  Hits hits;
+  (*made)->first_hits(rays, hits);
+  for (const auto& hit : hits) EXPECT_FALSE(hit);
+  EXPECT_EQ((*made)->which_occluded(rays), 0u);
+}
+
+}  // namespace
+}  // namespace marrow::test
