@@ -18,17 +18,17 @@ struct RayPacket {
   RayPacket() = default;
   /// At most `size` rays; the other lanes stay 0 and are not to be asked for.
   explicit RayPacket(std::span<const Ray> rays) {
-    for (std::size_t lane = 0; lane < rays.size(); ++lane) {
-      const Ray& ray = rays[lane];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        origin[axis][lane] = ray.origin[axis];
-        direction[axis][lane] = ray.direction.vec()[axis];
-      }
-      t_min[lane] = ray.t_min;
-      t_max[lane] = ray.t_max;
-    }
+    for (std::size_t lane = 0; lane < rays.size(); ++lane) set(static_cast<int>(lane), rays[lane]);
   }
 
+  void set(int lane, const Ray& ray) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      origin[axis][lane] = ray.origin[axis];
+      direction[axis][lane] = ray.direction.vec()[axis];
+    }
+    t_min[lane] = ray.t_min;
+    t_max[lane] = ray.t_max;
+  }
   /// The ray of a lane, to the same bits.
   Ray ray(int lane) const {
     const auto at = [lane](const double(&axes)[3][size]) { return Vec3d{axes[0][lane], axes[1][lane], axes[2][lane]}; };

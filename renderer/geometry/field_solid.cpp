@@ -1,6 +1,8 @@
 #include "renderer/geometry/field_solid.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <utility>
 
 namespace marrow {
@@ -53,17 +55,21 @@ FieldSolid::LocalRay FieldSolid::to_local(const Ray& ray) const {
           stretch};
 }
 
+ElementLog FieldSolid::to_world(const CellLog& log, double stretch) {
+  return {.enter = log.enter / stretch,
+          .undecided = log.undecided / stretch,
+          .evaluations = log.evaluations,
+          .outside_from = log.outside_from / stretch,
+          .begins_inside = log.side == CellLog::Side::Inside};
+}
+
 template <class Place>
 std::optional<double> FieldSolid::traced(const Place& place, const Ray& ray, bool any, ElementLog& log) const {
   const auto [local, stretch] = to_local(ray);
   CellLog cell;
   cell.outside_from = log.outside_from * stretch;
   const auto found = tracer_->first_hit(place, local, any, cell);
-  log = {.enter = cell.enter / stretch,
-         .undecided = cell.undecided / stretch,
-         .evaluations = cell.evaluations,
-         .outside_from = cell.outside_from / stretch,
-         .begins_inside = cell.side == CellLog::Side::Inside};
+  log = to_world(cell, stretch);
   if (!found) return {};
   const double t = std::max(ray.t_min, found->t / stretch);
   if (!any && t > ray.t_max) return {};
@@ -80,6 +86,31 @@ std::optional<double> FieldSolid::hit(std::size_t element, const Ray& ray, bool 
 std::optional<double> FieldSolid::hit_in_part(const SolidPart& part, const Ray& ray, bool any, ElementLog& log) const {
   if (part.within == nullptr) return hit(part.element, ray, any, log);
   return traced(TracePart{part.element, static_cast<const Tile*>(part.within), part.slot}, ray, any, log);
+}
+
+void FieldSolid::hits_in_part(const SolidPart& part, const RayPacket& packet, unsigned lanes, bool any,
+                              PacketLog& log) const {
+  if (part.within == nullptr) return Solid::hits_in_part(part, packet, lanes, any, log);
+  std::array<double, RayPacket::size> stretch;
+  stretch.fill(1);
+  RayPacket moved;
+  if (!in_world_)
+    for_each_lane(lanes, [&](std::size_t i) {
+      const LocalRay local = to_local(packet.ray(static_cast<int>(i)));
+      moved.set(static_cast<int>(i), local.ray);
+      stretch[i] = local.stretch;
+    });
+  CellHits cells;
+  for_each_lane(lanes, [&](std::size_t i) { cells.log[i].outside_from = log.lanes[i].outside_from * stretch[i]; });
+  const TracePart place{part.element, static_cast<const Tile*>(part.within), part.slot};
+  tracer_->first_hits(place, in_world_ ? packet : moved, lanes, any, cells);
+  for_each_lane(lanes, [&](std::size_t i) {
+    log.lanes[i] = to_world(cells.log[i], stretch[i]);
+    log.lanes[i].place = cells.hit[i].block;
+    const double t = std::max(packet.t_min[i], cells.hit[i].t / stretch[i]);
+    const bool met = cells.hit[i].block != nullptr && (any || t <= packet.t_max[i]);
+    log.t[i] = met ? t : std::numeric_limits<double>::infinity();
+  });
 }
 
 std::vector<SolidPart> FieldSolid::parts() const {

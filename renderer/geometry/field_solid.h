@@ -22,6 +22,7 @@ class FieldSolid final : public Solid {
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
   std::vector<SolidPart> parts() const override;
   std::optional<double> hit_in_part(const SolidPart&, const Ray&, bool any, ElementLog&) const override;
+  void hits_in_part(const SolidPart&, const RayPacket&, unsigned lanes, bool any, PacketLog&) const override;
   void describe(std::size_t, const void* place, const Ray&, SurfaceHit&) const override;
   std::size_t primitive_count() const override { return tracer_->field().size(); }
   std::size_t bytes() const override { return tracer_->statistics().bytes; }
@@ -37,6 +38,7 @@ class FieldSolid final : public Solid {
     double stretch;
   };
   LocalRay to_local(const Ray&) const;
+  static ElementLog to_world(const CellLog&, double stretch);
   template <class Place>
   std::optional<double> traced(const Place&, const Ray&, bool any, ElementLog&) const;
   Box3 to_world(const Box3&) const;

@@ -22,6 +22,7 @@ constexpr int worth_a_packet = 3;
 struct Query : RTCIntersectContext {
   Query(PartVisit* of_lanes, const RayPacket* of_rays) : visits(of_lanes), packet(of_rays) {
     rtcInitIntersectContext(this);
+    if (of_rays != nullptr) flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   }
   PartVisit* visits;
   const RayPacket* packet;
