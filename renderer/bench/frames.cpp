@@ -2,9 +2,12 @@
 #include "renderer/bench/frames.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <mutex>
 #include <numbers>
+#include <span>
 
 #include <tbb/blocked_range.h>
 #include <tbb/blocked_range2d.h>
@@ -13,6 +16,7 @@
 #include <tbb/task_arena.h>
 
 #include "field/math/elementary.h"
+#include "field/math/ray_packet.h"
 
 namespace marrow {
 namespace {
@@ -50,13 +54,48 @@ RayCounts counted(const FrameSettings& settings, const Range& range, const Body&
 
 using Pixels = tbb::blocked_range2d<int>;
 
-double shade(const RayEngine& engine, const Vec3d& toward_light, const EngineHit& hit, RayCounts& counts) {
+// As many as rays in a packet, which are asked together; engines without packets take them one by one.
+constexpr int block_side = 4;
+
+struct Block {
+  int x0, y0, x1, y1;
+};
+
+// Of fixed size, so that no engine is charged for memory of the loop.
+using BlockRays = std::array<Ray, RayPacket::size>;
+using BlockHits = std::array<EngineHit, RayPacket::size>;
+
+// Light of the hits whose bits are set.
+double shade(const RayEngine& engine, const Vec3d& toward_light, const BlockHits& hits, unsigned hit,
+             RayCounts& counts) {
   constexpr double ambient = 0.1, albedo = 0.8;
-  const double facing = dot(hit.normal, toward_light);
-  if (!(facing > 0)) return ambient;
-  ++counts.shadow_rays;
-  if (engine.occluded({hit.outside, UnitVec3::unchecked(toward_light)})) return ambient;
-  return ambient + albedo * facing;
+  std::array<double, RayPacket::size> facing;
+  BlockRays shadow_rays;
+  std::size_t lit = 0;
+  for (unsigned left = hit; left != 0; left &= left - 1) {
+    const EngineHit& at = hits[static_cast<std::size_t>(std::countr_zero(left))];
+    facing[lit] = dot(at.normal, toward_light);
+    if (facing[lit] > 0) shadow_rays[lit++] = {at.outside, UnitVec3::unchecked(toward_light)};
+  }
+  counts.shadow_rays += lit;
+  const unsigned hidden = engine.which_occluded(std::span(shadow_rays).first(lit));
+  double light = ambient * std::popcount(hit);
+  for (std::size_t i = 0; i < lit; ++i)
+    if (!(hidden >> i & 1)) light += albedo * facing[i];
+  return light;
+}
+
+void shade_block(const RayEngine& engine, const Camera& camera, const Vec3d& toward_light, const Block& block,
+                 RayCounts& counts) {
+  BlockRays rays;
+  BlockHits hits;
+  std::size_t count = 0;
+  for (int y = block.y0; y < block.y1; ++y)
+    for (int x = block.x0; x < block.x1; ++x) rays[count++] = camera.ray(x, y);
+  const unsigned hit = engine.first_hits(std::span(rays).first(count), hits, counts);
+  counts.rays += count;
+  counts.hits += static_cast<std::uint64_t>(std::popcount(hit));
+  counts.light += shade(engine, toward_light, hits, hit, counts);
 }
 
 // A bijection of 64 bits whose outputs look random: the finaliser of splitmix64.
@@ -79,14 +118,11 @@ UnitVec3 diffuse_direction(const Vec3d& normal, std::uint64_t seed) {
 RayCounts shaded_frame(const RayEngine& engine, const Workload& workload, const FrameSettings& settings) {
   const Camera camera(workload, settings.size);
   return counted(settings, Pixels(0, settings.size, 16, 0, settings.size, 16), [&](const Pixels& part, RayCounts& c) {
-    for (int y = part.rows().begin(); y < part.rows().end(); ++y)
-      for (int x = part.cols().begin(); x < part.cols().end(); ++x) {
-        EngineHit hit;
-        ++c.rays;
-        if (!engine.first_hit(camera.ray(x, y), hit, c)) continue;
-        ++c.hits;
-        c.light += shade(engine, workload.toward_light, hit, c);
-      }
+    const int right = part.cols().end(), bottom = part.rows().end();
+    for (int y = part.rows().begin(); y < bottom; y += block_side)
+      for (int x = part.cols().begin(); x < right; x += block_side)
+        shade_block(engine, camera, workload.toward_light,
+                    {x, y, std::min(x + block_side, right), std::min(y + block_side, bottom)}, c);
   });
 }
 

@@ -12,7 +12,8 @@ struct FrameSettings {
   int threads = 2;
 };
 
-/// One ray through the middle of each pixel, and one shadow ray from each hit that faces the sun.
+/// One ray through the middle of each pixel, and one shadow ray from each hit that faces the sun; those of 4 x 4 pixels
+/// are asked together.
 RayCounts shaded_frame(const RayEngine&, const Workload&, const FrameSettings&);
 
 /// The hits of the rays through the pixels' middles, in the order of the pixels.

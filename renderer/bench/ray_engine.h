@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "field/math/ray.h"
@@ -35,13 +37,26 @@ class RayEngine {
   virtual ~RayEngine() = default;
   virtual bool first_hit(const Ray&, EngineHit&, RayCounts&) const = 0;
   virtual bool occluded(const Ray&) const = 0;
+  /// Neighbouring rays together, at most RayPacket::size: bit i of the answer says whether rays[i] has a hit, hits[i].
+  virtual unsigned first_hits(std::span<const Ray> rays, std::span<EngineHit> hits, RayCounts& counts) const {
+    unsigned found = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      found |= static_cast<unsigned>(first_hit(rays[i], hits[i], counts)) << i;
+    return found;
+  }
+  /// Bit i is of rays[i].
+  virtual unsigned which_occluded(std::span<const Ray> rays) const {
+    unsigned hidden = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) hidden |= static_cast<unsigned>(occluded(rays[i])) << i;
+    return hidden;
+  }
   /// As Surfaces::refine().
   virtual void refine() const {}
 };
 
-/// The surfaces of this project; they must outlive the engine.
+/// The surfaces of this project, which take neighbouring rays together; they must outlive the engine.
 std::unique_ptr<RayEngine> engine_of(const Surfaces&);
-/// The same, but slower: it counts evaluations and what is not certified.
+/// The same ray by ray, and slower: it counts evaluations and what is not certified.
 std::unique_ptr<RayEngine> recording_engine_of(const Surfaces&);
 
 struct TriangleMesh {

@@ -1,39 +1,56 @@
 // The surfaces of this project as an engine to be measured.
+#include "field/math/ray_packet.h"
 #include "renderer/bench/ray_engine.h"
 
 namespace marrow {
 namespace {
 
-class SurfacesEngine : public RayEngine {
+EngineHit engine_hit(const SurfaceHit& hit) { return {hit.position, hit.normal.vec(), hit.outside}; }
+
+class SurfacesEngine final : public RayEngine {
  public:
   explicit SurfacesEngine(const Surfaces& surfaces) : surfaces_(surfaces) {}
 
-  bool first_hit(const Ray& ray, EngineHit& hit, RayCounts& counts) const final {
-    const auto found = traced(ray, counts);
-    if (!found) return false;
-    hit = {found->position, found->normal.vec(), found->outside};
-    return true;
+  bool first_hit(const Ray& ray, EngineHit& hit, RayCounts&) const override {
+    const auto found = surfaces_.first_hit(ray);
+    if (found) hit = engine_hit(*found);
+    return found.has_value();
   }
-  bool occluded(const Ray& ray) const final { return surfaces_.occluded(ray); }
-  void refine() const final { surfaces_.refine(); }
+  bool occluded(const Ray& ray) const override { return surfaces_.occluded(ray); }
+  unsigned first_hits(std::span<const Ray> rays, std::span<EngineHit> hits, RayCounts&) const override {
+    std::array<std::optional<SurfaceHit>, RayPacket::size> found;
+    surfaces_.first_hits(rays, found);
+    unsigned bits = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (!found[i]) continue;
+      hits[i] = engine_hit(*found[i]);
+      bits |= 1U << i;
+    }
+    return bits;
+  }
+  unsigned which_occluded(std::span<const Ray> rays) const override { return surfaces_.which_occluded(rays); }
+  void refine() const override { surfaces_.refine(); }
 
- protected:
-  virtual std::optional<SurfaceHit> traced(const Ray& ray, RayCounts&) const { return surfaces_.first_hit(ray); }
+ private:
   const Surfaces& surfaces_;
 };
 
-class RecordingEngine final : public SurfacesEngine {
+class RecordingEngine final : public RayEngine {
  public:
-  using SurfacesEngine::SurfacesEngine;
+  explicit RecordingEngine(const Surfaces& surfaces) : surfaces_(surfaces) {}
 
- private:
-  std::optional<SurfaceHit> traced(const Ray& ray, RayCounts& counts) const override {
+  bool first_hit(const Ray& ray, EngineHit& hit, RayCounts& counts) const override {
     RayRecord record;
     const auto found = surfaces_.first_hit(ray, record);
     counts.evaluations += record.evaluations;
     counts.uncertified += record.certified ? 0 : 1;
-    return found;
+    if (found) hit = engine_hit(*found);
+    return found.has_value();
   }
+  bool occluded(const Ray& ray) const override { return surfaces_.occluded(ray); }
+
+ private:
+  const Surfaces& surfaces_;
 };
 
 }  // namespace

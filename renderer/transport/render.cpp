@@ -13,7 +13,7 @@
 #include <tbb/task_arena.h>
 
 #include "renderer/transport/integrators/integrator.h"
-#include "renderer/transport/sampling/pixel_filter.h"
+#include "renderer/transport/pixel_block.h"
 #include "renderer/transport/tile_order.h"
 
 namespace marrow {
@@ -82,56 +82,17 @@ struct Job {
   const RenderSettings& settings;
   const RenderOptions& options;
   std::unique_ptr<const Integrator> integrator = make_integrator(settings);
-  PixelFilter filter{};
   int samples = sample_count(settings);
+  PixelJob pixels{scene, *integrator, settings.seed, samples};
 
   bool interrupted() const { return options.interrupted && options.interrupted->load(std::memory_order_relaxed); }
 };
 
-struct Pass {
-  int first = 0, count = 0;
-};
-
-void store(CentreHit& centre, const SurfaceHit& hit, const Camera& camera) {
-  centre.depth = static_cast<float>(camera.depth(hit.position));
-  for (std::size_t i = 0; i < 3; ++i) {
-    centre.normal[i] = static_cast<float>(hit.normal.vec()[i]);
-    centre.position[i] = static_cast<float>(hit.position[i]);
-  }
-  centre.object = hit.object.value + 1;
-}
-
-FilmSample camera_sample(const Job& job, const Ray& ray, const std::optional<SurfaceHit>& hit, Sampler& sampler) {
-  FilmSample sample{.radiance = job.integrator->radiance(ray, hit, job.scene, sampler), .albedo = {}, .covered = true};
-  if (hit) sample.albedo = job.scene.materials[hit->material.index()].albedo_at(hit->position);
-  else sample.covered = job.scene.lights.finite_light_on(ray);
-  return sample;
-}
-
-// The samples of a pass of one pixel, in order. The channels free of noise come from a ray through the pixel's middle,
-// traced in the first pass; where a pixel has a single sample that ray is the sample.
-void render_pixel(const Job& job, int x, int y, Pass pass, PixelSums& pixel) {
-  const RenderScene& scene = job.scene;
-  Sampler sampler(x, y, job.settings.seed);
-  if (pass.first == 0) {
-    const Ray ray = scene.camera.ray(x + 0.5, y + 0.5);
-    RayRecord record;
-    const auto hit = scene.surfaces->first_hit(ray, record);
-    pixel.centre.evaluations = record.evaluations;
-    pixel.centre.certified = record.certified;
-    if (hit) store(pixel.centre, *hit, scene.camera);
-    if (job.samples == 1) {
-      sampler.start(0);
-      pixel.add(camera_sample(job, ray, hit, sampler));
-      return;
-    }
-  }
-  for (int i = pass.first; i < pass.first + pass.count; ++i) {
-    sampler.start(static_cast<std::uint32_t>(i));
-    const Sample2 offset = job.filter.offset(sampler.next_2d());
-    const Ray ray = scene.camera.ray(x + 0.5 + offset.x, y + 0.5 + offset.y);
-    pixel.add(camera_sample(job, ray, scene.surfaces->first_hit(ray), sampler));
-  }
+void render_tile(const Job& job, const PixelWindow& tile, Pass pass, Film& film) {
+  for (int y = tile.y0; y < tile.y1; y += block_side)
+    for (int x = tile.x0; x < tile.x1; x += block_side)
+      render_block(job.pixels, {x, y, std::min(x + block_side, tile.x1), std::min(y + block_side, tile.y1)}, pass,
+                   film);
 }
 
 void render_pass(const Job& job, const std::vector<PixelWindow>& tiles, Pass pass, Film& film, Meter& meter) {
@@ -141,8 +102,7 @@ void render_pass(const Job& job, const std::vector<PixelWindow>& tiles, Pass pas
   const auto render_tiles = [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t t = range.begin(); t < range.end() && !job.interrupted(); ++t) {
       const PixelWindow& tile = tiles[t];
-      for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1; ++x) render_pixel(job, x, y, pass, film.at(x, y));
+      render_tile(job, tile, pass, film);
       meter.add(static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height()) *
                 static_cast<std::uint64_t>(pass.count));
     }

@@ -55,6 +55,17 @@ TEST(Frames, CountRays) {
   EXPECT_EQ(diffuse_paths(*engine, hits, 4, {64, 1}).rays, paths.rays);
 }
 
+// Of which blocks of 4 x 4 pixels stick out.
+TEST(Frames, OfAnySizeAskForEachPixelOnce) {
+  const auto engine = embree_round_cones(one_of_each(), 1);
+  ASSERT_TRUE(engine);
+  for (const int size : {1, 30, 47}) {
+    const RayCounts frame = shaded_frame(*engine, one_of_each(), {size, 2});
+    EXPECT_EQ(frame.rays, static_cast<std::uint64_t>(size) * static_cast<std::uint64_t>(size));
+    EXPECT_EQ(frame.hits, hits_of_frame(*engine, one_of_each(), {size, 1}).size());
+  }
+}
+
 TEST(EmbreeEngine, MeetsTriangles) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

@@ -42,6 +42,33 @@ TEST(PathTracer, StrategiesAgreeOnCoatsUnderSkies) {
   expect_agreement(scene_of(floor_only, {coat}, lights), ray_to({-2, 2, 0.1}, {0, 0, 0}), "skies");
 }
 
+// Rays that meet the floor, the light or nothing, side by side and one by one.
+TEST(PathTracer, SamplesTogetherAreThoseAlone) {
+  const std::vector<Light> lights{
+      Light(Rectangle({.center = {2, 2, 0}, .normal = {-1, -1, 0}, .width = 2, .height = 2}, false)),
+      Light(Sun({.direction = {1, 1, 0}, .irradiance = Rgb(2), .angle_deg = 20}))};
+  const RenderScene scene = scene_of(floor_only, {diffuse(0.8)}, lights);
+  std::vector<Ray> rays;
+  std::vector<std::optional<SurfaceHit>> first;
+  for (int i = 0; i < 16; ++i) {
+    rays.push_back(ray_to({-2, 2, 0.1}, {0.3 * i, 0.3 * (i % 8), 0}));
+    first.push_back(floor_only.first_hit(rays.back()));
+  }
+  for (const Strategy strategy : {Strategy::Both, Strategy::LightsOnly, Strategy::SurfacesOnly})
+    for (const int depth : {1, 5}) {
+      const PathTracer tracer(depth, strategy);
+      for (const std::size_t count : {16, 5, 0}) {
+        std::vector<Sampler> samplers;
+        for (std::size_t i = 0; i < count; ++i) samplers.emplace_back(static_cast<int>(i), 3, 1);
+        std::vector<Sampler> alone = samplers;
+        std::vector<Rgb> together(count);
+        tracer.radiances({std::span(rays).first(count), std::span(first).first(count), samplers}, scene, together);
+        for (std::size_t i = 0; i < count; ++i)
+          EXPECT_EQ(together[i], tracer.radiance(rays[i], first[i], scene, alone[i])) << i;
+      }
+    }
+}
+
 // Weighting keeps the noise near that of the better way, down to a thousandth of the light.
 TEST(PathTracer, WeightsTakeTheBetterStrategy) {
   const Light light(Rectangle({.center = {2, 2, 0}, .normal = {-1, -1, 0}, .width = 1, .height = 1}, false));

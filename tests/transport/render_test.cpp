@@ -1,6 +1,7 @@
 // Pictures have the same bits however they are made, and stop when told.
 #include "renderer/transport/render.h"
 
+#include <array>
 #include <atomic>
 #include <cfenv>
 #include <numbers>
@@ -39,6 +40,51 @@ TEST(Render, BitsDoNotDependOnThreads) {
   const RenderSettings settings{.samples_per_pixel = 5};
   const Picture one = to_picture(render(scene, settings, {.threads = 1}));
   for (const int threads : {0, 2, 7}) expect_same_bits(one, to_picture(render(scene, settings, {.threads = threads})));
+}
+
+// Blocks of pixels whose rays go together are cut by tiles.
+TEST(Render, BitsDoNotDependOnTiles) {
+  const RenderScene scene = studio(37, 21);
+  for (const int samples : {1, 4}) {
+    const RenderSettings settings{.samples_per_pixel = samples};
+    const Picture usual = to_picture(render(scene, settings, {.tile_size = 16}));
+    for (const int side : {1, 3, 7}) expect_same_bits(usual, to_picture(render(scene, settings, {.tile_size = side})));
+  }
+}
+
+// Counts how many rays come together.
+class CountingSurfaces final : public Surfaces {
+ public:
+  explicit CountingSurfaces(const Surfaces& surfaces) : surfaces_(surfaces) {}
+  std::optional<SurfaceHit> first_hit(const Ray& ray, RayRecord& record) const override {
+    return surfaces_.first_hit(ray, record);
+  }
+  bool occluded(const Ray& ray) const override { return surfaces_.occluded(ray); }
+  void first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits) const override {
+    ++together.at(rays.size());
+    surfaces_.first_hits(rays, hits);
+  }
+  unsigned which_occluded(std::span<const Ray> rays) const override {
+    shadow_rays += rays.size();
+    return surfaces_.which_occluded(rays);
+  }
+  Box3 bounds() const override { return surfaces_.bounds(); }
+
+  mutable std::array<int, 17> together{};
+  mutable std::size_t shadow_rays = 0;
+
+ private:
+  const Surfaces& surfaces_;
+};
+
+TEST(Render, RaysOfSixteenPixelsGoTogether) {
+  const CountingSurfaces counting(ball_on_floor);
+  const RenderScene scene = studio(20, 10, counting);
+  render(scene, {.integrator = RenderSettings::Integrator::Direct, .samples_per_pixel = 3}, {.threads = 1});
+  // Rows of five blocks: two of whole ones, one of halves
+  EXPECT_EQ(counting.together[16], 3 * 10);
+  EXPECT_EQ(counting.together[8], 3 * 5);
+  EXPECT_GT(counting.shadow_rays, 100u);
 }
 
 // A program that embeds the renderer may have set another rounding, on which every sum depends.

@@ -2,6 +2,7 @@
 #include "renderer/transport/integrators/path_tracer.h"
 
 #include <limits>
+#include <vector>
 
 namespace marrow {
 namespace {
@@ -64,8 +65,14 @@ Rgb met_light(const RenderScene& scene, const Ray& ray, double t_surface, const 
   return sum;
 }
 
-// Light that one light, picked at random, sends to the vertex and the vertex sends on.
-Rgb asked_light(const RenderScene& scene, const Vertex& at, Sampler& sampler, Strategy strategy) {
+// What a light sends to a vertex and the vertex sends on, unless something is on the ray.
+struct AskedLight {
+  Ray shadow_ray;
+  Rgb radiance;
+};
+
+// Asks one light, picked at random; nothing when no light can come.
+std::optional<AskedLight> asked_light(const RenderScene& scene, const Vertex& at, Sampler& sampler, Strategy strategy) {
   if (scene.lights.empty()) return {};
   const LightSet::Pick pick = scene.lights.pick(scene.lights.size() == 1 ? 0 : sampler.next_1d());
   const auto light = pick.light->sample(at.receiver, sampler.next_2d());
@@ -73,12 +80,11 @@ Rgb asked_light(const RenderScene& scene, const Vertex& at, Sampler& sampler, St
   if (strategy == Strategy::SurfacesOnly && !light->delta) return {};
   const Scattered scattered = at.bsdf.evaluate(at.wo, at.to_local(light->wi));
   if (is_black(scattered.f_cos)) return {};
-  if (scene.surfaces->occluded(
-          {.origin = at.receiver.position, .direction = light->wi, .t_min = 0, .t_max = light->distance * reach}))
-    return {};
   const double pdf = pick.probability * light->pdf;
   const bool rivals = !light->delta && strategy == Strategy::Both;
-  return scattered.f_cos * light->radiance * ((rivals ? power_heuristic(pdf, scattered.pdf) : 1) / pdf);
+  return AskedLight{
+      {.origin = at.receiver.position, .direction = light->wi, .t_min = 0, .t_max = light->distance * reach},
+      scattered.f_cos * light->radiance * ((rivals ? power_heuristic(pdf, scattered.pdf) : 1) / pdf)};
 }
 
 // Ends the path with a probability that its throughput gives, and pays those that go on. Returns whether it goes on.
@@ -90,35 +96,110 @@ bool survives(Rgb& throughput, Sampler& sampler) {
   return true;
 }
 
+// A path from the camera on, surface by surface. At each of them light is asked for, which whoever walks it answers.
+class Path {
+ public:
+  Path(const RenderScene& scene, int max_depth, Strategy strategy, const Ray& camera_ray,
+       const std::optional<SurfaceHit>& first, Sampler& sampler)
+      : scene_(scene), max_depth_(max_depth), strategy_(strategy), sampler_(sampler) {
+    arrive(camera_ray, first, {});
+  }
+  bool ended() const { return !at_.has_value(); }
+  Rgb radiance() const { return radiance_; }
+
+  /// Preconditions of these, which take turns: not ended.
+  std::optional<AskedLight> ask() { return asked_light(scene_, *at_, sampler_, strategy_); }
+  void receive(const Rgb& light) { radiance_ += throughput_ * light; }
+  void go_on();
+
+ private:
+  void arrive(const Ray&, const std::optional<SurfaceHit>&, const Departure&);
+  void end() { at_.reset(); }
+
+  const RenderScene& scene_;
+  const int max_depth_;
+  const Strategy strategy_;
+  Sampler& sampler_;
+  int depth_ = 0;  // surfaces so far
+  Rgb radiance_;
+  Rgb throughput_{1};
+  std::optional<Vertex> at_;  // nothing when the path has ended
+};
+
+// Light that the ray has met comes first; the surface that it has met may be its last.
+void Path::arrive(const Ray& ray, const std::optional<SurfaceHit>& hit, const Departure& from) {
+  radiance_ += throughput_ * met_light(scene_, ray, hit ? hit->t : infinity, from, strategy_);
+  end();
+  if (!hit) return;
+  at_.emplace(*hit, ray.direction, scene_);
+  radiance_ += throughput_ * at_->emitted;
+  if (++depth_ > max_depth_) end();
+}
+
+// In a direction that the surface draws.
+void Path::go_on() {
+  if (depth_ == max_depth_ && !scene_.lights.can_be_met() && !scene_.has_emission) return end();
+  const auto drawn = at_->bsdf.sample(at_->wo, sampler_.next_3d());
+  if (!drawn) return end();
+  throughput_ *= drawn->weight;
+  if (depth_ > surfaces_before_roulette && !survives(throughput_, sampler_)) return end();
+  const Receiver start = at_->receiver;
+  const Ray ray{.origin = start.position, .direction = UnitVec3::unchecked(at_->frame.to_world(drawn->wi))};
+
+  // A last ray matters only for light that it meets itself
+  const Departure from{&start, drawn->pdf};
+  if (depth_ == max_depth_ && !scene_.has_emission && is_black(met_light(scene_, ray, infinity, from, strategy_)))
+    return end();
+  arrive(ray, scene_.surfaces->first_hit(ray), from);
+}
+
+// The rest of a path, with shadow rays of its own.
+Rgb walked(Path& path, const Surfaces& surfaces) {
+  while (!path.ended()) {
+    const auto asked = path.ask();
+    path.receive(asked && !surfaces.occluded(asked->shadow_ray) ? asked->radiance : Rgb{});
+    path.go_on();
+  }
+  return path.radiance();
+}
+
+// At their first surfaces the paths ask for light together: neighbours go to the same light.
+void light_first_surfaces(std::span<Path> paths, const Surfaces& surfaces) {
+  struct Waiting {
+    Path* path;
+    Rgb light;
+  };
+  std::vector<Waiting> waiting;
+  std::vector<Ray> shadow_rays;
+  for (Path& path : paths) {
+    if (path.ended()) continue;
+    const auto asked = path.ask();
+    if (asked) shadow_rays.push_back(asked->shadow_ray);
+    if (asked) waiting.push_back({&path, asked->radiance});
+    else path.receive({});
+  }
+  const unsigned hidden = surfaces.which_occluded(shadow_rays);
+  for (std::size_t i = 0; i < waiting.size(); ++i) waiting[i].path->receive(hidden >> i & 1 ? Rgb{} : waiting[i].light);
+}
+
 }  // namespace
 
 Rgb PathTracer::radiance(const Ray& camera_ray, const std::optional<SurfaceHit>& first, const RenderScene& scene,
                          Sampler& sampler) const {
-  Rgb radiance = met_light(scene, camera_ray, first ? first->t : infinity, {}, strategy_);
-  Rgb throughput(1);
-  Ray ray = camera_ray;
-  std::optional<SurfaceHit> hit = first;
-  for (int depth = 1; hit; ++depth) {
-    const Vertex at(*hit, ray.direction, scene);
-    radiance += throughput * at.emitted;
-    if (depth > max_depth_) break;
-    radiance += throughput * asked_light(scene, at, sampler, strategy_);
-    if (depth == max_depth_ && !scene.lights.can_be_met() && !scene.has_emission) break;
+  Path path(scene, max_depth_, strategy_, camera_ray, first, sampler);
+  return walked(path, *scene.surfaces);
+}
 
-    // Go on in a direction that the surface draws
-    const auto drawn = at.bsdf.sample(at.wo, sampler.next_3d());
-    if (!drawn) break;
-    throughput *= drawn->weight;
-    if (depth > surfaces_before_roulette && !survives(throughput, sampler)) break;
-    ray = {.origin = at.receiver.position, .direction = UnitVec3::unchecked(at.frame.to_world(drawn->wi))};
-
-    // A last ray matters only for light that it meets itself
-    const Departure from{&at.receiver, drawn->pdf};
-    if (depth == max_depth_ && !scene.has_emission && is_black(met_light(scene, ray, infinity, from, strategy_))) break;
-    hit = scene.surfaces->first_hit(ray);
-    radiance += throughput * met_light(scene, ray, hit ? hit->t : infinity, from, strategy_);
+void PathTracer::radiances(const CameraSamples& of, const RenderScene& scene, std::span<Rgb> radiances) const {
+  std::vector<Path> paths;
+  paths.reserve(of.rays.size());
+  for (std::size_t i = 0; i < of.rays.size(); ++i)
+    paths.emplace_back(scene, max_depth_, strategy_, of.rays[i], of.first[i], of.samplers[i]);
+  light_first_surfaces(paths, *scene.surfaces);
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (!paths[i].ended()) paths[i].go_on();
+    radiances[i] = walked(paths[i], *scene.surfaces);
   }
-  return radiance;
 }
 
 }  // namespace marrow

@@ -1,0 +1,101 @@
+#include "renderer/transport/pixel_block.h"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace marrow {
+namespace {
+
+// The pixels of a block, and one camera sample of each: one entry a pixel in all lists.
+struct Block {
+  Block(const PixelWindow& window, std::uint64_t seed, Film& film) {
+    const auto count = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
+    pixels.reserve(count);
+    samplers.reserve(count);
+    for (int y = window.y0; y < window.y1; ++y)
+      for (int x = window.x0; x < window.x1; ++x) {
+        pixels.push_back({x + 0.5, y + 0.5, &film.at(x, y)});
+        samplers.emplace_back(x, y, seed);
+      }
+    rays.resize(count);
+    hits.resize(count);
+    radiances.resize(count);
+  }
+  struct Pixel {
+    double middle_x, middle_y;
+    PixelSums* sums;
+  };
+  std::vector<Pixel> pixels;
+  std::vector<Sampler> samplers;
+  std::vector<Ray> rays;
+  std::vector<std::optional<SurfaceHit>> hits;
+  std::vector<Rgb> radiances;
+};
+
+void store(CentreHit& centre, const SurfaceHit& hit, const Camera& camera) {
+  centre.depth = static_cast<float>(camera.depth(hit.position));
+  for (std::size_t i = 0; i < 3; ++i) {
+    centre.normal[i] = static_cast<float>(hit.normal.vec()[i]);
+    centre.position[i] = static_cast<float>(hit.position[i]);
+  }
+  centre.object = hit.object.value + 1;
+}
+
+// One by one, because each tells what it took.
+void trace_centres(const RenderScene& scene, Block& block) {
+  for (std::size_t i = 0; i < block.pixels.size(); ++i) {
+    const auto& [x, y, sums] = block.pixels[i];
+    RayRecord record;
+    block.rays[i] = scene.camera.ray(x, y);
+    block.hits[i] = scene.surfaces->first_hit(block.rays[i], record);
+    sums->centre.evaluations = record.evaluations;
+    sums->centre.certified = record.certified;
+    if (block.hits[i]) store(sums->centre, *block.hits[i], scene.camera);
+  }
+}
+
+void start_samples(Block& block, int index) {
+  for (Sampler& sampler : block.samplers) sampler.start(static_cast<std::uint32_t>(index));
+}
+
+void trace_samples(const PixelJob& job, Block& block) {
+  for (std::size_t i = 0; i < block.pixels.size(); ++i) {
+    const Sample2 offset = job.filter.offset(block.samplers[i].next_2d());
+    block.rays[i] = job.scene.camera.ray(block.pixels[i].middle_x + offset.x, block.pixels[i].middle_y + offset.y);
+  }
+  job.scene.surfaces->first_hits(block.rays, block.hits);
+}
+
+void add_samples(const PixelJob& job, Block& block) {
+  const RenderScene& scene = job.scene;
+  job.integrator.radiances({block.rays, block.hits, block.samplers}, scene, block.radiances);
+  for (std::size_t i = 0; i < block.pixels.size(); ++i) {
+    const auto& hit = block.hits[i];
+    FilmSample sample{.radiance = block.radiances[i], .albedo = {}, .covered = true};
+    if (hit) sample.albedo = scene.materials[hit->material.index()].albedo_at(hit->position);
+    else sample.covered = scene.lights.finite_light_on(block.rays[i]);
+    block.pixels[i].sums->add(sample);
+  }
+}
+
+}  // namespace
+
+void render_block(const PixelJob& job, const PixelWindow& window, Pass pass, Film& film) {
+  Block block(window, job.seed, film);
+  if (pass.first == 0) {
+    trace_centres(job.scene, block);
+    if (job.samples == 1) {
+      start_samples(block, 0);
+      add_samples(job, block);
+      return;
+    }
+  }
+  for (int i = pass.first; i < pass.first + pass.count; ++i) {
+    start_samples(block, i);
+    trace_samples(job, block);
+    add_samples(job, block);
+  }
+}
+
+}  // namespace marrow

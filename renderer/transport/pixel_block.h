@@ -1,0 +1,35 @@
+// Neighbouring pixels whose rays go together.
+#pragma once
+
+#include <cstdint>
+
+#include "renderer/transport/film/film.h"
+#include "renderer/transport/integrators/integrator.h"
+#include "renderer/transport/render_scene.h"
+#include "renderer/transport/sampling/pixel_filter.h"
+
+namespace marrow {
+
+/// Samples `first` to `first + count - 1` of every pixel.
+struct Pass {
+  int first = 0, count = 0;
+};
+
+/// What a sample of a pixel is a function of.
+struct PixelJob {
+  const RenderScene& scene;
+  const Integrator& integrator;
+  std::uint64_t seed = 0;
+  int samples = 1;  ///< of each pixel in all
+  PixelFilter filter{};
+};
+
+/// The side of a block: together its pixels have as many rays as a packet.
+constexpr int block_side = 4;
+
+/// The samples of a pass of at most block_side x block_side pixels of the film. A pixel's samples are added in order,
+/// and have the same bits whatever pixels are with it. The channels free of noise come from a ray through the pixel's
+/// middle, traced in the first pass; where a pixel has a single sample that ray is the sample.
+void render_block(const PixelJob&, const PixelWindow& block, Pass, Film&);
+
+}  // namespace marrow
