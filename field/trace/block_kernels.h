@@ -85,16 +85,36 @@ struct Root {
   bool enters_inside = false;   ///< a hit, but the field is clearly above 1 where surface can first be in the block
 };
 
-/// Sixteen rays side by side, and what is found on each; in the sets of rays the lowest bit is that of lane 0.
-struct LocalRays {
-  alignas(64) float origin[3][lanes];
-  alignas(64) float direction[3][lanes];  ///< unit length
+/// Sixteen rays side by side in double, 64-byte aligned: the arrays of a RayPacket.
+struct PacketView {
+  const double *origin[3], *direction[3], *t_min, *t_max;
 };
-struct Roots {
-  alignas(64) float t[lanes];
-  alignas(64) float undecided[lanes];  ///< as in Root
+
+/// Layers of slots of a tile: where a cell or a smaller tile is in it.
+struct TileLayers {
+  double center[3], half;              ///< of the tile
+  float first_plane[3], end_plane[3];  ///< in its coordinates
+};
+
+/// Where a cell is: rays are clipped to the box around all that the tile of the first level holds, then to the layers
+/// of each smaller tile that holds the cell, then to those of the cell.
+struct CellPlace {
+  static constexpr int most_tiles = 24;  ///< a tile takes two of at most 40 halvings
+  double box_lower[3], box_upper[3];
+  TileLayers tiles[most_tiles];
+  int tile_count;
+  double block_center[3], block_half;
+};
+
+/// Of each ray of a packet in a cell; in the sets of rays the lowest bit is that of lane 0.
+struct CellRoots {
+  alignas(64) double outside_from[lanes];  ///< as in CellLog; in and out
+  alignas(64) double enter[lanes];         ///< where it comes into the cell, and leaves it
+  alignas(64) double exit[lanes];
+  alignas(64) double t[lanes];          ///< of a hit
+  alignas(64) double undecided[lanes];  ///< as in Root
   alignas(64) int evaluations[lanes];
-  unsigned hit, begins_outside, enters_inside;
+  unsigned entered, hit, begins_outside, enters_inside;
 };
 
 /// Gaps along a ray shorter than this times the distance to the nearest source are not decided.
@@ -203,15 +223,9 @@ struct BlockKernels {
   };
   /// The first t in [t0, t1] where the corrected field reaches 1.
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
-  /// As Query, of none that is leaving.
-  struct PacketQuery {
-    alignas(64) float t0[lanes];
-    alignas(64) float t1[lanes];
-    unsigned active, from_surface, from_outside;  ///< sets of rays
-    bool any;
-  };
-  /// first_root() of each active ray, to the same bits.
-  void (*first_roots)(const BlockView&, const LocalRays&, const PacketQuery&, Roots&);
+  /// first_root() for each asked ray that comes into a cell whose alpha is constant, to the same bits. Null where the
+  /// instruction set has no good vectors of sixteen.
+  void (*roots_in_cell)(const BlockView&, const CellPlace&, const PacketView&, unsigned asked, bool any, CellRoots&);
   PointField (*point_field)(const FieldLevel&, int degree, const float point[3]);
   /// Through the slots of a set, in coordinates of the cube of 4 x 4 x 4 slots, [-1, 1]^3.
   void (*walk)(std::uint64_t slots, const LocalRay&, float t0, float t1, Walk&);

@@ -19,7 +19,6 @@ namespace {
 #include "field/trace/kernels/search.h"
 #include "field/trace/kernels/runs.h"
 #include "field/trace/kernels/first_root.h"
-#include "field/trace/kernels/packet.h"
 #include "field/trace/kernels/walk.h"
 #include "field/trace/kernels/points.h"
 #include "field/trace/kernels/cube.h"
@@ -29,8 +28,8 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root,  first_roots, point_field,   walk,           cube_bounds,
-                                        far_moments, far_split,   octant_bounds, strand_samples, add_strand};
+  static constexpr BlockKernels kernels{first_root,  nullptr,   point_field,   walk,           cube_bounds,
+                                        far_moments, far_split, octant_bounds, strand_samples, add_strand};
   return kernels;
 }
 

@@ -21,23 +21,25 @@ struct LayerSpan {
   int first, end;
 };
 
+constexpr float slot_planes[5] = {-2, -0.5F, 0, 0.5F, 2};  // around the layers; the outer ones reach beyond the cube
+
+LayerSpan layers_of(const TileContent& content, int slot, int axis) {
+  const int layer = slot >> (2 * axis) & 3;
+  if (content.large_cells >> path_of(slot).outer & 1) return {layer & 2, (layer & 2) + 2};
+  return {layer, layer + 1};
+}
+
 // Where a line is between the planes of some layers along one axis: the numbers of walk.h.
 void clip_to_layers(const LayerSpan& layers, float origin, float direction, float& begin, float& end) {
-  constexpr float planes[5] = {-2, -0.5F, 0, 0.5F, 2};
   const float inverse = 1 / (std::fabs(direction) > 1e-20F ? direction : 1e-20F);
-  const float a = (planes[layers.first] - origin) * inverse, b = (planes[layers.end] - origin) * inverse;
+  const float a = (slot_planes[layers.first] - origin) * inverse, b = (slot_planes[layers.end] - origin) * inverse;
   begin = std::max(begin, std::min(a, b));
   end = std::min(end, std::max(a, b));
 }
 
 // Where a walk over the slots of the cell would begin and end.
 bool clip_to_cell(const TileContent& content, int slot, const LocalRay& ray, float& begin, float& end) {
-  const bool whole_octant = content.large_cells >> path_of(slot).outer & 1;
-  for (int k = 0; k < 3; ++k) {
-    const int layer = slot >> (2 * k) & 3;
-    const LayerSpan layers = whole_octant ? LayerSpan{layer & 2, (layer & 2) + 2} : LayerSpan{layer, layer + 1};
-    clip_to_layers(layers, ray.origin[k], ray.direction[k], begin, end);
-  }
+  for (int k = 0; k < 3; ++k) clip_to_layers(layers_of(content, slot, k), ray.origin[k], ray.direction[k], begin, end);
   return begin < end;
 }
 
@@ -106,64 +108,83 @@ std::optional<CellHit> BlendTracer::first_hit(const TracePart& part, const Ray& 
   return hit && hit->t <= ray.t_max ? hit : std::nullopt;
 }
 
+namespace {
+
+TileLayers layers_in(const Tile& tile, int slot) {
+  const TilePlace& place = tile.place();
+  TileLayers out{.center = {place.center.x, place.center.y, place.center.z},
+                 .half = place.half,
+                 .first_plane = {},
+                 .end_plane = {}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const LayerSpan layers = layers_of(tile.content(), slot, static_cast<int>(k));
+    out.first_plane[k] = slot_planes[layers.first];
+    out.end_plane[k] = slot_planes[layers.end];
+  }
+  return out;
+}
+
+int tiles_above(const Tile& tile) { return tile.place().parent == nullptr ? 0 : 1 + tiles_above(*tile.place().parent); }
+
+CellPlace place_of(const TracePart& part, const Block& block) {
+  CellPlace place;
+  const Tile* tile = part.within;
+  int slot = part.slot;
+  place.tile_count = tiles_above(*tile) + 1;
+  for (int i = place.tile_count - 1; i >= 0; --i) {
+    place.tiles[i] = layers_in(*tile, slot);
+    if (i == 0) break;
+    slot = tile->place().slot;
+    tile = tile->place().parent;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    place.box_lower[k] = tile->content_box().lower[k];
+    place.box_upper[k] = tile->content_box().upper[k];
+    place.block_center[k] = block.center()[k];
+  }
+  place.block_half = block.half();
+  return place;
+}
+
+}  // namespace
+
 void BlendTracer::first_hits(const TracePart& part, const RayPacket& packet, unsigned rays, bool any,
                              CellHits& out) const {
-  if (part.within != nullptr && is_cell(part)) {
+  if (state_->kernels.roots_in_cell != nullptr && !state_->range && part.within != nullptr && is_cell(part) &&
+      tiles_above(*part.within) < CellPlace::most_tiles) {
     const Block& b = block(*part.within, part.slot);
     if (!b.empty()) return first_hits_in_cell(part, b, packet, rays, any, out);
   }
-  for (unsigned left = rays; left != 0; left &= left - 1) {
-    const int lane = std::countr_zero(left);
-    const auto i = static_cast<std::size_t>(lane);
-    out.hit[i] = first_hit(part, packet.ray(lane), any, out.log[i]).value_or(CellHit{});
-  }
+  for_each_lane(
+      rays, [&](std::size_t i) { out.hit[i] = first_hit(part, packet.ray(i), any, out.log[i]).value_or(CellHit{}); });
 }
 
 void BlendTracer::first_hits_in_cell(const TracePart& part, const Block& b, const RayPacket& packet, unsigned rays,
                                      bool any, CellHits& out) const {
-  LocalRays local{};
-  BlockKernels::PacketQuery query{.t0 = {}, .t1 = {}, .active = 0, .from_surface = 0, .from_outside = 0, .any = any};
-  std::array<Stretch, RayPacket::size> stretches;
-  for (unsigned left = rays; left != 0; left &= left - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(left));
-    const Ray ray = packet.ray(static_cast<int>(i));
-    out.hit[i] = {};
-    const auto stretch = enter(part, ray, any, out.log[i]);
-    if (!stretch) continue;
-    stretches[i] = *stretch;
+  CellRoots roots{};
+  for_each_lane(rays, [&](std::size_t i) { roots.outside_from[i] = out.log[i].outside_from; });
+  const PacketView view{{packet.origin[0], packet.origin[1], packet.origin[2]},
+                        {packet.direction[0], packet.direction[1], packet.direction[2]},
+                        packet.t_min,
+                        packet.t_max};
+  state_->kernels.roots_in_cell(b.view(), place_of(part, b), view, rays, any, roots);
+  for_each_lane(rays, [&](std::size_t i) {
     const unsigned bit = 1U << i;
-    const RayInCube cube(ray, b.center(), b.half());
-    for (std::size_t k = 0; k < 3; ++k) {
-      local.origin[k][i] = cube.local.origin[k];
-      local.direction[k][i] = cube.local.direction[k];
-    }
-    query.t0[i] = cube.to_local(stretch->enter);
-    query.t1[i] = cube.to_local(stretch->exit);
-    query.active |= bit;
-    query.from_surface |= stretch->enter <= ray.t_min ? bit : 0;
-    query.from_outside |= out.log[i].side == CellLog::Side::Outside ? bit : 0;
-  }
-  if (query.active == 0) return;
-  Roots roots;
-  state_->kernels.first_roots(b.view(), local, query, roots);
-  for (unsigned left = query.active; left != 0; left &= left - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(left));
-    const unsigned bit = 1U << i;
-    const Ray ray = packet.ray(static_cast<int>(i));
     CellLog& log = out.log[i];
+    out.hit[i] = {};
+    log.side = CellLog::Side::Unknown;
+    if (!(roots.entered & bit)) return;
     if (roots.enters_inside & bit) {  // it may begin inside: that is asked one by one
-      out.hit[i] = first_hit(part, ray, any, log).value_or(CellHit{});
-      continue;
+      out.hit[i] = first_hit(part, packet.ray(i), any, log).value_or(CellHit{});
+      return;
     }
-    const RayInCube cube(ray, b.center(), b.half());
+    log.enter = roots.enter[i];
     log.evaluations += static_cast<std::uint32_t>(roots.evaluations[i]);
     if (roots.begins_outside & bit) log.side = CellLog::Side::Outside;
-    log.undecided = std::min(log.undecided, cube.to_world(roots.undecided[i]));
-    pass_on_side(ray, stretches[i].enter, stretches[i].exit, log);
-    if (!(roots.hit & bit)) continue;
-    const double t = std::max(cube.to_world(roots.t[i]), ray.t_min), end = any ? std::min(t, stretches[i].exit) : t;
-    if (end <= ray.t_max) out.hit[i] = {end, &b};
-  }
+    log.undecided = std::min(log.undecided, roots.undecided[i]);
+    log.outside_from = roots.outside_from[i];
+    if (roots.hit & bit) out.hit[i] = {roots.t[i], &b};
+  });
 }
 
 std::vector<TracePart> BlendTracer::parts() const {

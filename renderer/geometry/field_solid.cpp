@@ -96,8 +96,8 @@ void FieldSolid::hits_in_part(const SolidPart& part, const RayPacket& packet, un
   RayPacket moved;
   if (!in_world_)
     for_each_lane(lanes, [&](std::size_t i) {
-      const LocalRay local = to_local(packet.ray(static_cast<int>(i)));
-      moved.set(static_cast<int>(i), local.ray);
+      const LocalRay local = to_local(packet.ray(i));
+      moved.set(i, local.ray);
       stretch[i] = local.stretch;
     });
   CellHits cells;

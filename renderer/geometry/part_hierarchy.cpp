@@ -150,7 +150,7 @@ struct Starts {
     auto* of_any_count = reinterpret_cast<RTCRayN*>(&rays);
     std::fill_n(rays.tfar, RayPacket::size, done);
     for_each_lane(lanes, [&](std::size_t lane) {
-      visits[lane] = PartVisit(packet.ray(static_cast<int>(lane)));
+      visits[lane] = PartVisit(packet.ray(lane));
       if (start(bounds, visits[lane], of_any_count, RayPacket::size, static_cast<unsigned>(lane))) valid[lane] = -1;
     });
   }
@@ -213,8 +213,7 @@ bool PartHierarchy::occluded(const Ray& ray) const {
 
 void PartHierarchy::first_hits(const RayPacket& packet, unsigned lanes, Hits& hits) const {
   if (std::popcount(lanes) < worth_a_packet) {
-    for_each_lane(lanes,
-                  [&](std::size_t lane) { hits[lane] = first_hit(packet.ray(static_cast<int>(lane)), nullptr); });
+    for_each_lane(lanes, [&](std::size_t lane) { hits[lane] = first_hit(packet.ray(lane), nullptr); });
     return;
   }
   RTCRayHit16 rayhits{};
@@ -229,9 +228,8 @@ void PartHierarchy::first_hits(const RayPacket& packet, unsigned lanes, Hits& hi
 unsigned PartHierarchy::occluded(const RayPacket& packet, unsigned lanes) const {
   unsigned hidden = 0;
   if (std::popcount(lanes) < worth_a_packet) {
-    for_each_lane(lanes, [&](std::size_t lane) {
-      hidden |= static_cast<unsigned>(occluded(packet.ray(static_cast<int>(lane)))) << lane;
-    });
+    for_each_lane(lanes,
+                  [&](std::size_t lane) { hidden |= static_cast<unsigned>(occluded(packet.ray(lane))) << lane; });
     return hidden;
   }
   RTCRay16 rays{};

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -26,12 +25,6 @@ struct ElementLog {
   double outside_from = std::numeric_limits<double>::infinity();  ///< CellLog's, from part to part of one solid
   bool begins_inside = false;  ///< of a part: the ray begins inside, and elements have to be asked instead
 };
-
-/// `lanes` of a packet as bits, lane i as bit i; calls body(i) for each.
-template <class Body>
-void for_each_lane(unsigned lanes, const Body& body) {
-  for (unsigned left = lanes; left != 0; left &= left - 1) body(static_cast<std::size_t>(std::countr_zero(left)));
-}
 
 /// What the rays of a packet did in a part, lane by lane.
 struct PacketLog {
@@ -81,7 +74,7 @@ inline std::vector<SolidPart> Solid::parts() const {
 inline void Solid::hits_in_part(const SolidPart& part, const RayPacket& packet, unsigned lanes, bool any,
                                 PacketLog& log) const {
   for_each_lane(lanes, [&](std::size_t lane) {
-    const auto t = hit_in_part(part, packet.ray(static_cast<int>(lane)), any, log.lanes[lane]);
+    const auto t = hit_in_part(part, packet.ray(lane), any, log.lanes[lane]);
     log.t[lane] = t.value_or(std::numeric_limits<double>::infinity());
   });
 }
