@@ -192,9 +192,9 @@ Result<std::unique_ptr<PartHierarchy>> PartHierarchy::make(RTCDeviceTy* device, 
   return h;
 }
 
-PartHierarchy::Hit PartHierarchy::first_hit(const Ray& ray, std::vector<ElementLog>* visits) const {
+PartHierarchy::Hit PartHierarchy::first_hit(const Ray& ray, std::vector<ElementLog>* logs) const {
   PartVisit visit(ray);
-  visit.visits = visits;
+  visit.logs = logs;
   RTCRayHit rayhit{};
   if (!start(padded_bounds_, visit, reinterpret_cast<RTCRayN*>(&rayhit.ray), 1, 0)) return {};
   rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
