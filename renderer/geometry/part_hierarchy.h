@@ -30,8 +30,8 @@ class PartHierarchy {
   using Hit = PartHit;
   using Hits = std::array<Hit, RayPacket::size>;
   /// The smallest t wins; at equal t the lower solid, the lower element, the part entered first: the order of traversal
-  /// shows nowhere. `visits`, if any, is told of all parts visited.
-  Hit first_hit(const Ray&, std::vector<ElementLog>* visits) const;
+  /// shows nowhere. `logs`, if any, is told of all parts visited.
+  Hit first_hit(const Ray&, std::vector<ElementLog>* logs) const;
   bool occluded(const Ray&) const;
   /// The same for the rays of `lanes` (bit i is lane i), to the same bits; `hits` of other lanes are left as they are.
   void first_hits(const RayPacket&, unsigned lanes, Hits& hits) const;

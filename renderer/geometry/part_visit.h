@@ -28,12 +28,12 @@ class PartVisit {
   Ray ray;
   double t_start = 0;  ///< where the search of boxes begins on the ray
   PartHit best;
-  std::vector<ElementLog>* visits = nullptr;  ///< told of all parts, if there is one
+  std::vector<ElementLog>* logs = nullptr;  ///< told of all parts, if there is one
 
-  /// Whether the ray comes into a box before the best hit. A ray exactly in the plane of a padded face gives NaN and
-  /// may count either way; what the box is padded for is not there.
+  /// Whether the ray comes into a box before its end and before the best hit. A ray exactly in the plane of a padded
+  /// face gives NaN and may count either way; what the box is padded for is not there.
   bool enters(const Box3& box) const {
-    double enter = ray.t_min, exit = best.t;
+    double enter = ray.t_min, exit = std::min(ray.t_max, best.t);
     for (std::size_t i = 0; i < 3; ++i) {
       const double a = (box.lower[i] - ray.origin[i]) * inverse_[i], b = (box.upper[i] - ray.origin[i]) * inverse_[i];
       enter = std::max(enter, std::min(a, b));
@@ -53,7 +53,7 @@ class PartVisit {
   bool take(std::size_t index, const Solid& solid, const SolidPart& part, double t, const ElementLog& log) {
     outside_of_ = &solid;
     outside_from_ = log.outside_from;
-    if (visits != nullptr && log.evaluations > 0) visits->push_back(log);
+    if (logs != nullptr && log.evaluations > 0) logs->push_back(log);
     best.undecided = std::min(best.undecided, log.undecided);
     best.begins_inside |= log.begins_inside;
     if (!(t < std::numeric_limits<double>::infinity()) || t > best.t) return false;

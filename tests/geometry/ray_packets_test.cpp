@@ -58,6 +58,31 @@ Rays of_a_camera(Random& random) {
   return rays;
 }
 
+// Along an axis, through faces, edges and corners of elements' boxes.
+Rays of_faces(Random& random, const EmbreeSurfaces& surfaces) {
+  const auto pick = [&](std::size_t size) {
+    return static_cast<std::size_t>(random.whole(0, static_cast<int>(size) - 1));
+  };
+  const auto axis = pick(3);
+  Vec3d direction{};
+  direction[axis] = random.between(0, 1) < 0.5 ? -1 : 1;
+  const double distance = random.between(0, 1) < 0.2 ? 1e5 : 8;
+  Rays rays;
+  for (int i = 0; i < RayPacket::size; ++i) {
+    const Solid& solid = *surfaces.solids()[pick(surfaces.solids().size())].solid;
+    const Box3 box = solid.element_box(pick(solid.element_count()));
+    Vec3d target;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double kind = random.between(0, 1);
+      target[k] = kind < 0.4 ? box.lower[k] : kind < 0.8 ? box.upper[k] : random.between(box.lower[k], box.upper[k]);
+    }
+    // One in eight slants, so that the packet is no bundle of parallels
+    const Vec3d slant = i % 8 == 7 ? direction + random.vector(0.1) : direction;
+    rays.push_back({target - slant * distance, normalize(slant)});
+  }
+  return rays;
+}
+
 // From where other rays met something, toward the sun.
 Rays of_shadows(Random& random, const Surfaces& surfaces) {
   const UnitVec3 toward_sun = normalize(random_direction(random));
@@ -116,18 +141,20 @@ struct Comparison {
 TEST(RayPackets, EqualSingleRays) {
   for (const std::string isa : {"sse4.2", "avx2", "avx512"}) {
     Random random(131);
-    Comparison camera, shadows, mixed, few;
+    Comparison camera, faces, shadows, mixed, few;
     const BlendField blend = random_scene(random, {4, contact_alpha(4)}, 5);
     const auto surfaces = everything(random, blend, "threads=1,max_isa=" + isa);
     for (int i = 0; i < 400; ++i) {
       if (i % 60 == 59) surfaces->refine();
       camera.check(*surfaces, of_a_camera(random));
+      faces.check(*surfaces, of_faces(random, *surfaces));
       shadows.check(*surfaces, of_shadows(random, *surfaces));
       const Rays rays = of_all_kinds(random, *surfaces, blend);
       mixed.check(*surfaces, rays);
       few.check(*surfaces, std::span(rays).first(static_cast<std::size_t>(random.whole(0, 5))));
     }
     camera.report(isa + ", of a camera");
+    faces.report(isa + ", of faces");
     shadows.report(isa + ", of shadows");
     mixed.report(isa + ", of all kinds");
     few.report(isa + ", of few rays");
@@ -146,6 +173,7 @@ TEST(RayPackets, EqualSingleRaysFarFromTheOrigin) {
     Rays rays = of_a_camera(random);
     for (Ray& ray : rays) ray = moved(ray, away);
     all.check(scene.surfaces(), rays);
+    all.check(scene.surfaces(), of_faces(random, scene.surfaces()));
   }
   all.report("1000 away from the origin");
 }
