@@ -148,7 +148,7 @@ void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::option
   PartHierarchy::Hits found;
   finest().first_hits(before_planes, lanes_of(rays), found);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (found[i].begins_inside) found[i] = whole_->first_hit(before_planes.ray(static_cast<int>(i)), nullptr);
+    if (found[i].begins_inside) found[i] = whole_->first_hit(before_planes.ray(i), nullptr);
     hits[i] = hit_of(found[i], planes[i], rays[i]);
   }
 }

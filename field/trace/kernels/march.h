@@ -55,6 +55,7 @@ struct Marcher {
     p.sure = p.residual > 0.0F;
     p.margin = select(p.sure, p.residual, p.nominal);
     if (exits) mirror(p);
+    scale(p);
     return p;
   }
 
@@ -98,18 +99,13 @@ struct Marcher {
     return found;
   }
 
-  // (v / V)^(-1/(n-1)) - 1 of the field as summed, and its derivative: 0 on the surface and, near a single skeleton,
-  // linear in the distance from it, so that Newton's method on it jumps well [Aydinlilar and Zanni 2021].
-  struct Scaled {
-    F value, slope;
-    F newton_step() const { return -value / slope; }
-  };
-  Scaled scaled(const Sample& p) const {
+  void scale(Sample& p) const {
     const F inverse = 1 / max_of(p.curve, 1e-6F), q = max_of(p.v * inverse, 1e-6F);
     const float side = exits ? -1.0F : 1.0F;                                // of mirrored samples
     const F dq = (p.v_slope - q * (side * p.slope + p.v_slope)) * inverse;  // (v / V)' with V' = residual' + v'
     const F root = inverse_root(q, block.degree - 1);
-    return {side * (root - 1), -side * root * dq / (q * static_cast<float>(block.degree - 1))};
+    p.scaled = side * (root - 1);
+    p.scaled_slope = -side * root * dq / (q * static_cast<float>(block.degree - 1));
   }
 
   // sum_{j=1..m} (m+1-j) a^j for m = degree (field) and degree + 1 (gradient): psi_1^m(q) / q^2 with a = 1/(1-q),

@@ -86,7 +86,6 @@ inline float to_float(int v) { return static_cast<float>(v); }
 inline V16 to_float(Index16 v) { return __builtin_convertvector(v, V16); }
 
 inline float gather(const float* table, int index) { return table[index]; }
-inline int gather(const int* table, int index) { return table[index]; }
 template <class V, class T>
 inline V gather_lanes(const T* table, Index16 index) {
   V v;
@@ -100,12 +99,12 @@ inline V16 gather(const float* table, Index16 index) {
   return gather_lanes<V16>(table, index);
 #endif
 }
-inline Index16 gather(const int* table, Index16 index) {
-#if defined(__AVX512F__)
-  return __builtin_ia32_gathersiv16si(Index16{}, table, index, -1, 4);
-#else
-  return gather_lanes<Index16>(table, index);
-#endif
+// Of sixteen numbers.
+inline int picked(const int (&table)[16], int index) { return table[index]; }
+inline Index16 picked(const int (&table)[16], Index16 index) {
+  Index16 all;
+  __builtin_memcpy(&all, table, sizeof all);
+  return __builtin_shuffle(all, index);
 }
 
 inline int bits_of(float v) {

@@ -34,12 +34,12 @@ class SlotBits {
   template <class Int>
   Int bit_of(const Int (&layer)[3]) const {
     const Int slot = (layer[0] & 3) | (layer[1] & 3) << 2 | (layer[2] & 3) << 4;
-    return gather(words_, 2 * octant_of(layer) + (slot >> 5)) >> (slot & 31) & 1;
+    return picked(words_, 2 * octant_of(layer) + (slot >> 5)) >> (slot & 31) & 1;
   }
 
   const BlockView& block_;
-  unsigned known_ = 0;  // a bit for each octant
-  int words_[16] = {};  // two for each octant
+  unsigned known_ = 0;              // a bit for each octant
+  alignas(64) int words_[16] = {};  // two for each octant
 };
 
 // Which of the eight layers of slots along an axis the ray is in, and where it leaves it. The outer layers go on

@@ -41,6 +41,11 @@ struct SampleOf : SampleShare<Varied> {
   F slope;               // derivative of the residual along the ray
   F v, v_slope, curve;   // v, its derivative along the ray, and V(u) of the field as summed
   F x_weight, y_weight;  // -d residual / dx, dy
+  // (v / V)^(-1/(n-1)) - 1 of the field as summed, and its derivative: 0 on the surface and, near a single skeleton,
+  // linear in the distance from it, so that Newton's method on it jumps well [Aydinlilar and Zanni 2021].
+  F scaled, scaled_slope;
+
+  F newton_step() const { return -scaled / scaled_slope; }
 };
 
 // The samples of some rays of a packet.
@@ -49,7 +54,8 @@ inline void assign(Index16 mask, SampleOf<false, V16>& to, const SampleOf<false,
   using Sums = RaySums<V16>;
   for (V16 Sample::*part :
        {&Sample::t, &Sample::y, &Sample::distance, &Sample::residual, &Sample::nominal, &Sample::margin, &Sample::raise,
-        &Sample::slope, &Sample::v, &Sample::v_slope, &Sample::curve, &Sample::x_weight, &Sample::y_weight})
+        &Sample::slope, &Sample::v, &Sample::v_slope, &Sample::curve, &Sample::x_weight, &Sample::y_weight,
+        &Sample::scaled, &Sample::scaled_slope})
     assign(mask, to.*part, from.*part);
   for (V16 Sums::*part : {&Sums::f, &Sums::df, &Sums::second, &Sums::third}) assign(mask, to.s.*part, from.s.*part);
   for (int i = 0; i < 3; ++i) {

@@ -57,7 +57,6 @@ template <bool Varied, class F = float>
 struct Search {
   using Sample = SampleOf<Varied, F>;
   using Mask = MaskOf<F>;
-  using Scaled = typename Marcher<Varied, F>::Scaled;
 
   Marcher<Varied, F>& march;
   F front, end;
@@ -140,23 +139,20 @@ struct Search {
   // Where the field as summed, without the level's errors, reaches 1: by the samples at the two ends of the first gap.
   // NaN-free; may lie outside the gap.
   F estimated_root() const {
-    Scaled before{}, behind{};
-    if (any(have_last)) before = march.scaled(last);
-    const Mask is_bracketed = bracketed();
-    if (any(is_bracketed)) behind = march.scaled(inside);
-    const Mask from_last = have_last & (before.slope < 0.0F), from_inside = is_bracketed & (behind.slope < 0.0F);
+    const Mask from_last = have_last & (last.scaled_slope < 0.0F),
+               from_inside = bracketed() & (inside.scaled_slope < 0.0F);
     F root = all_lanes<F>(infinity);
-    if (any(from_inside)) root = select(from_inside, inside.t + behind.newton_step(), root);
-    if (any(from_last)) root = select(from_last, last.t + before.newton_step(), root);
+    if (any(from_inside)) root = select(from_inside, inside.t + inside.newton_step(), root);
+    if (any(from_last)) root = select(from_last, last.t + last.newton_step(), root);
     const Mask from_both = from_last & from_inside;
-    if (any(from_both)) root = select(from_both, hermite_root(before, behind), root);
+    if (any(from_both)) root = select(from_both, hermite_root(), root);
     return root;
   }
 
   // The root of the cubic that meets the scaled values and slopes of both samples.
-  F hermite_root(const Scaled& before, const Scaled& behind) const {
-    const F h = inside.t - last.t, p0 = before.value, p1 = behind.value;
-    const F d0 = before.slope * h, d1 = behind.slope * h;
+  F hermite_root() const {
+    const F h = inside.t - last.t, p0 = last.scaled, p1 = inside.scaled;
+    const F d0 = last.scaled_slope * h, d1 = inside.scaled_slope * h;
     F u = p0 / max_of(p0 - p1, 1e-20F);
     for (int k = 0; k < 3; ++k) {
       const F u2 = u * u, u3 = u2 * u;
@@ -187,11 +183,10 @@ struct Search {
   Mask pinned(Mask rays, F& root) const {
     rays = rays & have_last;
     if (!any(rays)) return rays;
-    const Scaled scaled = march.scaled(last);
-    const F step = scaled.newton_step(), tolerance = shortest_gap * last.distance;
+    const F step = last.newton_step(), tolerance = shortest_gap * last.distance;
     root = select(rays, max_of(front, last.t + step), root);
-    const Mask close =
-        rays & (scaled.slope < 0.0F) & (step < 1.2e-3F * last.distance) & (root - front < tolerance) & (root <= end);
+    const Mask close = rays & (last.scaled_slope < 0.0F) & (step < 1.2e-3F * last.distance) &
+                       (root - front < tolerance) & (root <= end);
     if (!any(close)) return close;
     const Mask ends = close & bracketed() & (inside.t - root < tolerance), open = close & !ends;
     return any(open) ? ends | (open & march.crossed_at(last, step + tolerance)) : ends;
