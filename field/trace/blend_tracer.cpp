@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "field/trace/blend_tracer_state.h"
+#include "field/trace/cell_walk.h"
 #include "field/trace/ray_in_cube.h"
 
 namespace marrow {
@@ -35,39 +36,21 @@ const Block& BlendTracer::block(const Tile& tile, int slot) const {
 }
 
 std::optional<CellHit> BlendTracer::first_hit(std::size_t tile, const Ray& ray, bool any, CellLog& log) const {
-  const Vec3d& direction = ray.direction;
   const Tile& made = state_->tree.tile(tile);
-  auto [enter, exit] = clip(made.content_box(), ray, {1 / direction.x, 1 / direction.y, 1 / direction.z});
+  const auto [enter, exit] = clip_to_tile(made, ray, any);
   log.enter = enter;
   log.side = CellLog::Side::Unknown;
-  if (any) exit = std::min(exit, ray.t_max);
   if (!(enter < exit)) return {};
   const auto hit = hit_in(made, ray, any, enter, exit, log);
   return hit && hit->t <= ray.t_max ? hit : std::nullopt;
 }
 
-// The slots of an octant that is one cell follow each other along the ray: they count as one.
 std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, bool any, double enter, double exit,
                                            CellLog& log) const {
-  const TileContent& content = tile.content();
-  const RayInCube cube(ray, tile.place().center, tile.place().half);
-  Walk walk;
-  const float first = cube.to_local(enter);
-  state_->kernels.walk(tile.occupied(), cube.local, first, cube.to_local(exit), walk);
-  const auto holder = [&](int i) {
-    const int octant = path_of(walk.slot[i]).outer;
-    return content.large_cells >> octant & 1 ? slot_at({octant, 0}) : walk.slot[i];
-  };
-  for (int i = 0; i < walk.count; ++i) {
-    const int slot = holder(i);
-    // Exactly where the ray comes in, not that place as a float: a ray that begins here must be known to.
-    const double from = walk.begin[i] <= first ? enter : std::max(enter, cube.to_world(walk.begin[i]));
-    while (i + 1 < walk.count && holder(i + 1) == slot) ++i;
-    const double to = std::min(exit, cube.to_world(walk.end[i]));
-    const auto hit = content.cells >> slot & 1 ? hit_in(tile, slot, ray, any, from, to, log)
-                                               : hit_in(state_->tree.child(tile, slot), ray, any, from, to, log);
-    if (hit) return hit;
-  }
+  CellWalk walk;
+  walk.start(state_->tree, state_->kernels, tile, ray, enter, exit);
+  for (CellStep step; walk.next(step);)
+    if (const auto hit = hit_in(*step.tile, step.slot, ray, any, step.enter, step.exit, log)) return hit;
   return {};
 }
 

@@ -114,7 +114,8 @@ struct CellRoots {
   alignas(64) double t[lanes];          ///< of a hit
   alignas(64) double undecided[lanes];  ///< as in Root
   alignas(64) int evaluations[lanes];
-  unsigned entered, hit, begins_outside, enters_inside;
+  unsigned entered, begins_outside, enters_inside;
+  unsigned met, hit;  ///< met the surface; and not behind their ends
 };
 
 /// Gaps along a ray shorter than this times the distance to the nearest source are not decided.
@@ -226,6 +227,8 @@ struct BlockKernels {
   /// first_root() for each asked ray that comes into a cell whose alpha is constant, to the same bits. Null where the
   /// instruction set has no good vectors of sixteen.
   void (*roots_in_cell)(const BlockView&, const CellPlace&, const PacketView&, unsigned asked, bool any, CellRoots&);
+  /// The same of rays that are known to come through the cell, from `enter` to `exit`. Null with the other one.
+  void (*roots_between)(const BlockView&, const CellPlace&, const PacketView&, unsigned asked, bool any, CellRoots&);
   PointField (*point_field)(const FieldLevel&, int degree, const float point[3]);
   /// Through the slots of a set, in coordinates of the cube of 4 x 4 x 4 slots, [-1, 1]^3.
   void (*walk)(std::uint64_t slots, const LocalRay&, float t0, float t1, Walk&);

@@ -28,7 +28,7 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root,  nullptr,   point_field,   walk,           cube_bounds,
+  static constexpr BlockKernels kernels{first_root,  nullptr,   nullptr,       point_field,    walk,      cube_bounds,
                                         far_moments, far_split, octant_bounds, strand_samples, add_strand};
   return kernels;
 }

@@ -29,8 +29,9 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root,  roots_in_cell, point_field,   walk,           cube_bounds,
-                                        far_moments, far_split,     octant_bounds, strand_samples, add_strand};
+  static constexpr BlockKernels kernels{first_root,    roots_in_cell,  roots_between, point_field,
+                                        walk,          cube_bounds,    far_moments,   far_split,
+                                        octant_bounds, strand_samples, add_strand};
   return kernels;
 }
 

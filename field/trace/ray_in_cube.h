@@ -33,6 +33,7 @@ struct RayInCube {
   double t_near, half;
   LocalRay local;
 
+  RayInCube() = default;
   RayInCube(const Ray& ray, const Vec3d& center, double cube_half)
       : t_near(dot(center - ray.origin, ray.direction)), half(cube_half) {
     const double scale = 1 / half;

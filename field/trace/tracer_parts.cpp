@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "field/trace/blend_tracer_state.h"
+#include "field/trace/cell_walk.h"
 #include "field/trace/ray_in_cube.h"
+#include "field/trace/slot_layers.h"
 
 namespace marrow {
 
@@ -16,20 +18,7 @@ struct BlendTracer::Stretch {
 
 namespace {
 
-// The layers of slots that a cell takes along an axis: one, or both of an octant.
-struct LayerSpan {
-  int first, end;
-};
-
-constexpr float slot_planes[5] = {-2, -0.5F, 0, 0.5F, 2};  // around the layers; the outer ones reach beyond the cube
-
-LayerSpan layers_of(const TileContent& content, int slot, int axis) {
-  const int layer = slot >> (2 * axis) & 3;
-  if (content.large_cells >> path_of(slot).outer & 1) return {layer & 2, (layer & 2) + 2};
-  return {layer, layer + 1};
-}
-
-// Where a line is between the planes of some layers along one axis: the numbers of walk.h.
+// Where a line is between the planes of some layers along one axis.
 void clip_to_layers(const LayerSpan& layers, float origin, float direction, float& begin, float& end) {
   const float inverse = 1 / (std::fabs(direction) > 1e-20F ? direction : 1e-20F);
   const float a = (slot_planes[layers.first] - origin) * inverse, b = (slot_planes[layers.end] - origin) * inverse;
@@ -54,9 +43,7 @@ Box3 box_of(const Tile& tile, int slot) {
 std::optional<BlendTracer::Stretch> BlendTracer::stretch_in(const Tile& tile, const Ray& ray, bool any) const {
   const TilePlace& place = tile.place();
   if (place.parent != nullptr) return stretch_in(*place.parent, place.slot, ray, any);
-  const Vec3d& direction = ray.direction;
-  auto [enter, exit] = clip(tile.content_box(), ray, {1 / direction.x, 1 / direction.y, 1 / direction.z});
-  if (any) exit = std::min(exit, ray.t_max);
+  const auto [enter, exit] = clip_to_tile(tile, ray, any);
   if (!(enter < exit)) return {};
   return Stretch{enter, exit};
 }
@@ -106,85 +93,6 @@ std::optional<CellHit> BlendTracer::first_hit(const TracePart& part, const Ray& 
   if (log.side == CellLog::Side::Inside) return {};
   pass_on_side(ray, stretch->enter, stretch->exit, log);
   return hit && hit->t <= ray.t_max ? hit : std::nullopt;
-}
-
-namespace {
-
-TileLayers layers_in(const Tile& tile, int slot) {
-  const TilePlace& place = tile.place();
-  TileLayers out{.center = {place.center.x, place.center.y, place.center.z},
-                 .half = place.half,
-                 .first_plane = {},
-                 .end_plane = {}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const LayerSpan layers = layers_of(tile.content(), slot, static_cast<int>(k));
-    out.first_plane[k] = slot_planes[layers.first];
-    out.end_plane[k] = slot_planes[layers.end];
-  }
-  return out;
-}
-
-int tiles_above(const Tile& tile) { return tile.place().parent == nullptr ? 0 : 1 + tiles_above(*tile.place().parent); }
-
-CellPlace place_of(const TracePart& part, const Block& block) {
-  CellPlace place;
-  const Tile* tile = part.within;
-  int slot = part.slot;
-  place.tile_count = tiles_above(*tile) + 1;
-  for (int i = place.tile_count - 1; i >= 0; --i) {
-    place.tiles[i] = layers_in(*tile, slot);
-    if (i == 0) break;
-    slot = tile->place().slot;
-    tile = tile->place().parent;
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    place.box_lower[k] = tile->content_box().lower[k];
-    place.box_upper[k] = tile->content_box().upper[k];
-    place.block_center[k] = block.center()[k];
-  }
-  place.block_half = block.half();
-  return place;
-}
-
-}  // namespace
-
-void BlendTracer::first_hits(const TracePart& part, const RayPacket& packet, unsigned rays, bool any,
-                             CellHits& out) const {
-  if (state_->kernels.roots_in_cell != nullptr && !state_->range && part.within != nullptr && is_cell(part) &&
-      tiles_above(*part.within) < CellPlace::most_tiles) {
-    const Block& b = block(*part.within, part.slot);
-    if (!b.empty()) return first_hits_in_cell(part, b, packet, rays, any, out);
-  }
-  for_each_lane(
-      rays, [&](std::size_t i) { out.hit[i] = first_hit(part, packet.ray(i), any, out.log[i]).value_or(CellHit{}); });
-}
-
-void BlendTracer::first_hits_in_cell(const TracePart& part, const Block& b, const RayPacket& packet, unsigned rays,
-                                     bool any, CellHits& out) const {
-  CellRoots roots{};
-  for_each_lane(rays, [&](std::size_t i) { roots.outside_from[i] = out.log[i].outside_from; });
-  const PacketView view{{packet.origin[0], packet.origin[1], packet.origin[2]},
-                        {packet.direction[0], packet.direction[1], packet.direction[2]},
-                        packet.t_min,
-                        packet.t_max};
-  state_->kernels.roots_in_cell(b.view(), place_of(part, b), view, rays, any, roots);
-  for_each_lane(rays, [&](std::size_t i) {
-    const unsigned bit = 1U << i;
-    CellLog& log = out.log[i];
-    out.hit[i] = {};
-    log.side = CellLog::Side::Unknown;
-    if (!(roots.entered & bit)) return;
-    if (roots.enters_inside & bit) {  // it may begin inside: that is asked one by one
-      out.hit[i] = first_hit(part, packet.ray(i), any, log).value_or(CellHit{});
-      return;
-    }
-    log.enter = roots.enter[i];
-    log.evaluations += static_cast<std::uint32_t>(roots.evaluations[i]);
-    if (roots.begins_outside & bit) log.side = CellLog::Side::Outside;
-    log.undecided = std::min(log.undecided, roots.undecided[i]);
-    log.outside_from = roots.outside_from[i];
-    if (roots.hit & bit) out.hit[i] = {roots.t[i], &b};
-  });
 }
 
 std::vector<TracePart> BlendTracer::parts() const {

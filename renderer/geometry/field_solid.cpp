@@ -90,7 +90,6 @@ std::optional<double> FieldSolid::hit_in_part(const SolidPart& part, const Ray& 
 
 void FieldSolid::hits_in_part(const SolidPart& part, const RayPacket& packet, unsigned lanes, bool any,
                               PacketLog& log) const {
-  if (part.within == nullptr) return Solid::hits_in_part(part, packet, lanes, any, log);
   std::array<double, RayPacket::size> stretch;
   stretch.fill(1);
   RayPacket moved;
@@ -106,6 +105,7 @@ void FieldSolid::hits_in_part(const SolidPart& part, const RayPacket& packet, un
   tracer_->first_hits(place, in_world_ ? packet : moved, lanes, any, cells);
   for_each_lane(lanes, [&](std::size_t i) {
     log.lanes[i] = to_world(cells.log[i], stretch[i]);
+    if (part.within == nullptr) log.lanes[i].begins_inside = false;  // as of an element in hit()
     log.lanes[i].place = cells.hit[i].block;
     const double t = std::max(packet.t_min[i], cells.hit[i].t / stretch[i]);
     const bool met = cells.hit[i].block != nullptr && (any || t <= packet.t_max[i]);

@@ -56,7 +56,34 @@ struct Compared {
   int rays = 0, hits = 0, entered_inside = 0;
 };
 
+void expect_same(const CellHits& found, std::size_t i, const std::optional<CellHit>& expected, const CellLog& log) {
+  const CellLog& given = found.log[i];
+  ASSERT_EQ(found.hit[i].block != nullptr, expected.has_value()) << "lane " << i;
+  ASSERT_EQ(given.evaluations, log.evaluations) << "lane " << i;
+  ASSERT_EQ(bits(given.undecided), bits(log.undecided)) << "lane " << i;
+  ASSERT_EQ(given.side, log.side) << "lane " << i;
+  ASSERT_EQ(bits(given.enter), bits(log.enter)) << "lane " << i;
+  ASSERT_EQ(bits(given.outside_from), bits(log.outside_from)) << "lane " << i;
+  if (!expected) return;
+  ASSERT_EQ(bits(found.hit[i].t), bits(expected->t)) << "lane " << i;
+  ASSERT_EQ(found.hit[i].block, expected->block) << "lane " << i;
+}
+
+void expect_same_in_tiles(const BlendTracer& tracer, const Rays& rays, unsigned asked, bool any) {
+  const RayPacket packet(rays);
+  for (std::size_t tile = 0; tile < tracer.tile_count(); ++tile) {
+    CellHits found;
+    tracer.first_hits(tile, packet, asked, any, found);
+    for_each_lane(asked, [&](std::size_t i) {
+      CellLog log;
+      const auto expected = tracer.first_hit(tile, rays[i], any, log);
+      expect_same(found, i, expected, log);
+    });
+  }
+}
+
 void expect_same(const BlendTracer& tracer, const Rays& rays, unsigned asked, bool any, Compared& count) {
+  expect_same_in_tiles(tracer, rays, asked, any);
   const RayPacket packet(rays);
   std::array<double, RayPacket::size> outside_from{};
   outside_from.fill(std::numeric_limits<double>::infinity());
@@ -64,25 +91,15 @@ void expect_same(const BlendTracer& tracer, const Rays& rays, unsigned asked, bo
     CellHits found;
     for (std::size_t i = 0; i < rays.size(); ++i) found.log[i].outside_from = outside_from[i];
     tracer.first_hits(part, packet, asked, any, found);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (!(asked >> i & 1)) continue;
+    for_each_lane(asked, [&](std::size_t i) {
       CellLog log;
       log.outside_from = outside_from[i];
       const auto expected = tracer.first_hit(part, rays[i], any, log);
-      const CellLog& given = found.log[i];
-      ASSERT_EQ(found.hit[i].block != nullptr, expected.has_value()) << "lane " << i;
-      ASSERT_EQ(given.evaluations, log.evaluations) << "lane " << i;
-      ASSERT_EQ(bits(given.undecided), bits(log.undecided)) << "lane " << i;
-      ASSERT_EQ(given.side, log.side) << "lane " << i;
-      ASSERT_EQ(bits(given.enter), bits(log.enter)) << "lane " << i;
-      ASSERT_EQ(bits(given.outside_from), bits(log.outside_from)) << "lane " << i;
+      expect_same(found, i, expected, log);
       count.entered_inside += log.side == CellLog::Side::Inside;
+      count.hits += expected.has_value();
       outside_from[i] = log.outside_from;
-      if (!expected) continue;
-      ++count.hits;
-      ASSERT_EQ(bits(found.hit[i].t), bits(expected->t)) << "lane " << i;
-      ASSERT_EQ(found.hit[i].block, expected->block) << "lane " << i;
-    }
+    });
   }
   count.rays += std::popcount(asked);
 }

@@ -122,33 +122,43 @@ inline Index16 mask_of(unsigned bits) {
 struct Packet {
   Ray16 ray;
   V16 t0, t1;
-  unsigned entered = 0, from_surface = 0, from_outside = 0;
+  unsigned from_surface = 0, from_outside = 0;
 };
 
-inline Packet enter_cell(const CellPlace& cell, const PacketView& rays, unsigned asked, bool any_root, CellRoots& out) {
+// Where the rays are in the cell; returns those that come into it.
+inline unsigned enter_cell(const CellPlace& cell, const PacketView& rays, bool any_root, CellRoots& out) {
+  unsigned entered = 0;
+  for (int first = 0; first < lanes; first += half_packet) {
+    const Entry8 entry(cell, Ray8(rays, first), any_root);
+    store8(entry.stretch.enter, out.enter + first);
+    store8(entry.stretch.exit, out.exit + first);
+    entered |= entry.entered << first;
+  }
+  return entered;
+}
+
+inline Packet in_block(const CellPlace& cell, const PacketView& rays, const CellRoots& at) {
   alignas(64) float t0[lanes], t1[lanes], origin[3][lanes], direction[3][lanes];
   Packet packet;
   for (int first = 0; first < lanes; first += half_packet) {
     const Ray8 ray(rays, first);
-    const Entry8 entry(cell, ray, any_root);
-    const V8d enter = entry.stretch.enter;
-    store8(enter, out.enter + first);
-    store8(entry.stretch.exit, out.exit + first);
     const Rays8InCube block(ray, cell.block_center, cell.block_half);
+    const V8d enter = load8(at.enter + first);
     store8(block.to_local(enter), t0 + first);
-    store8(block.to_local(entry.stretch.exit), t1 + first);
+    store8(block.to_local(load8(at.exit + first)), t1 + first);
     for (int k = 0; k < 3; ++k) {
       store8(block.origin[k], origin[k] + first);
       store8(block.direction[k], direction[k] + first);
     }
-    packet.entered |= entry.entered << first;
     packet.from_surface |= bits8(enter <= ray.t_min) << first;
-    packet.from_outside |= bits8(enter >= load8(out.outside_from + first)) << first;
+    packet.from_outside |= bits8(enter >= load8(at.outside_from + first)) << first;
   }
-  packet.entered &= asked;
   packet.t0 = load(t0);
   packet.t1 = load(t1);
-  for (int k = 0; k < 3; ++k) packet.ray.origin[k] = load(origin[k]), packet.ray.direction[k] = load(direction[k]);
+  for (int k = 0; k < 3; ++k) {
+    packet.ray.origin[k] = load(origin[k]);
+    packet.ray.direction[k] = load(direction[k]);
+  }
   return packet;
 }
 
@@ -174,21 +184,26 @@ inline void leave_cell(const CellPlace& cell, const PacketView& rays, const Root
         *reinterpret_cast<const HalfIndex*>(reinterpret_cast<const char*>(&root.begins_outside) + 4 * first), Mask8);
     store8(outside ? first_min(from, here) : from, out.outside_from + first);
   }
-  out.hit &= in_time;
+  out.hit = out.met & in_time;
+}
+
+void roots_between(const BlockView& block, const CellPlace& cell, const PacketView& rays, unsigned asked, bool any_root,
+                   CellRoots& out) {
+  out.entered = asked;
+  out.met = out.hit = out.begins_outside = out.enters_inside = 0;
+  if (asked == 0) return;
+  const Packet packet = in_block(cell, rays, out);
+  const QueryOf<V16> query{
+      packet.t0, packet.t1, any_root, false, mask_of(packet.from_surface), mask_of(packet.from_outside)};
+  const RootOf<V16> root = first_root_of<false, V16>(block, packet.ray, query, mask_of(asked));
+  __builtin_memcpy(out.evaluations, &root.evaluations, sizeof out.evaluations);
+  out.met = lane_bits(root.hit);
+  out.begins_outside = lane_bits(root.begins_outside);
+  out.enters_inside = lane_bits(root.enters_inside);
+  leave_cell(cell, rays, root, any_root, out);
 }
 
 void roots_in_cell(const BlockView& block, const CellPlace& cell, const PacketView& rays, unsigned asked, bool any_root,
                    CellRoots& out) {
-  const Packet packet = enter_cell(cell, rays, asked, any_root, out);
-  out.entered = packet.entered;
-  out.hit = out.begins_outside = out.enters_inside = 0;
-  if (packet.entered == 0) return;
-  const QueryOf<V16> query{
-      packet.t0, packet.t1, any_root, false, mask_of(packet.from_surface), mask_of(packet.from_outside)};
-  const RootOf<V16> root = first_root_of<false, V16>(block, packet.ray, query, mask_of(packet.entered));
-  __builtin_memcpy(out.evaluations, &root.evaluations, sizeof out.evaluations);
-  out.hit = lane_bits(root.hit);
-  out.begins_outside = lane_bits(root.begins_outside);
-  out.enters_inside = lane_bits(root.enters_inside);
-  leave_cell(cell, rays, root, any_root, out);
+  roots_between(block, cell, rays, asked & enter_cell(cell, rays, any_root, out), any_root, out);
 }
