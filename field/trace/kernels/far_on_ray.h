@@ -31,10 +31,15 @@ inline auto nested_polynomial(const FieldLevel& level, const X& x, const Y& y, c
   else return nested_polynomial<Degree, A + 1>(level, x, y, z) * x + here;
 }
 
-// (f, Gx, Gy, Gz) of the far field at a point.
-inline V4 far_at(const FieldLevel& level, float x, float y, float z) {
-  return level.far_degree == 2 ? nested_polynomial<2>(level, x, y, z) : nested_polynomial<4>(level, x, y, z);
+template <class X, class Y, class Z>
+inline auto far_polynomial(const FieldLevel& level, const X& x, const Y& y, const Z& z) {
+  return level.far_degree == 2   ? nested_polynomial<2>(level, x, y, z)
+         : level.far_degree == 4 ? nested_polynomial<4>(level, x, y, z)
+                                 : nested_polynomial<6>(level, x, y, z);
 }
+
+// (f, Gx, Gy, Gz) of the far field at a point.
+inline V4 far_at(const FieldLevel& level, float x, float y, float z) { return far_polynomial(level, x, y, z); }
 
 // A value and its derivative along a ray.
 struct FarSlope {
@@ -61,8 +66,7 @@ struct FarOnRay {
 
   void add(float t, RaySums& s) const {
     const OnRay x = coordinate(0, t), y = coordinate(1, t), z = coordinate(2, t);
-    const FarSlope far =
-        level.far_degree == 2 ? nested_polynomial<2>(level, x, y, z) : nested_polynomial<4>(level, x, y, z);
+    const FarSlope far = far_polynomial(level, x, y, z);
     s.f += far.value[0];
     s.df += far.slope[0];
     for (int i = 0; i < 3; ++i) {
