@@ -41,7 +41,7 @@ struct FieldLevel {
   const float* sources = nullptr;        ///< curve groups, then point groups; 64-byte aligned
   int curve_groups = 0;                  ///< of exponent m = degree
   int point_groups = 0;                  ///< of exponent m = degree - 1
-  int far_degree = 4;                    ///< of the polynomials: 2 or 4
+  int far_degree = 4;                    ///< of the polynomials: 2, 4 or 6
   const float* far = nullptr;            ///< (f, Gx, Gy, Gz) for each monomial
   float f_error = 0, g_error = 0;        ///< added to f and |G| wherever "outside" is to be proved
   float far_slope = 0, far_g_slope = 0;  ///< |derivative| of the far f and G along any line, at most
@@ -131,7 +131,8 @@ struct PointField {
   float share_bend;                ///< |share - its linear part| <= share_bend h^2 on short steps h
 };
 
-inline constexpr int far_moment_count = 80;  ///< see FarMoments
+inline constexpr int most_far_moments = 200;  ///< see MomentTable: 200 of degree 6, 80 of degree 4
+inline constexpr int most_far_nodes = 5;
 
 inline constexpr int floats_per_piece_group = 13 * lanes;
 ///< from xyz, along xyz, 1 / length^2 (0 for a point), share = mass / tau^m, radius at the end less that at `from`,
@@ -167,9 +168,11 @@ struct FarQuery {
   float radius, half;  ///< of the ball and of the cube, in the coordinates of the pieces
   int exponent;
   bool points;
-  float field_budget, gradient_budget;              ///< the errors that one piece may cause
-  float field_series, gradient_series;              ///< binom(exponent + 4, 5), binom(exponent + 5, 5)
-  float field_rule[4] = {}, gradient_rule[4] = {};  ///< constants of GaussError for 1, 2 and 3 nodes
+  float field_budget, gradient_budget;  ///< the errors that one piece may cause
+  int far_degree;                       ///< P of far_field.h: 4 or 6
+  int most_nodes;                       ///< of a far piece
+  float field_series, gradient_series;  ///< binom(exponent + P, P + 1), binom(exponent + P + 1, P + 1)
+  float field_rule[most_far_nodes + 1] = {}, gradient_rule[most_far_nodes + 1] = {};  ///< constants of GaussError
   /// What a near piece may add anywhere in the ball to be left out, and count as an error; 0: none is left out.
   float slight_field = 0, slight_gradient = 0;
 };
@@ -177,8 +180,8 @@ struct FarQuery {
 /// Sums over the pieces that are far: their errors, their field and |G| at the cube's centre at most, their moments.
 struct FarSums {
   float f_error, g_error, field, gradient;
-  float f[far_moment_count],
-      potential[far_moment_count];  ///< in units of the cube, without the constants of FarMoments
+  float f[most_far_moments],
+      potential[most_far_moments];  ///< in units of the cube, without the constants of MomentTable
 };
 
 inline constexpr int floats_per_strand_group = 7 * lanes;  ///< xyz, weight, direction xyz
@@ -233,8 +236,8 @@ struct BlockKernels {
   /// Through the slots of a set, in coordinates of the cube of 4 x 4 x 4 slots, [-1, 1]^3.
   void (*walk)(std::uint64_t slots, const LocalRay&, float t0, float t1, Walk&);
   CubeBounds (*cube_bounds)(const FieldLevel&, int degree, const float center[3], float half);
-  /// Moments of groups of inverted sources (y, field at the origin, tau), without the constants of FarMoments.
-  void (*far_moments)(const float* groups, int count, float* f, float* potential);
+  /// Moments of groups of inverted sources (y, field at the origin, tau), without the constants of MomentTable.
+  void (*far_moments)(const float* groups, int count, int far_degree, float* f, float* potential);
   /// Sets a bit of near[k] for each lane of group k that is not far.
   void (*far_split)(const float* pieces, int groups, const FarQuery&, unsigned short* near, FarSums&);
   /// Of the eight octants, from groups of pieces: curves, then points.

@@ -12,7 +12,7 @@ namespace marrow {
 namespace {
 
 // The errors of the coarse level are far above what its polynomials have beyond this degree.
-constexpr int coarse_far_degree = 2;
+constexpr int coarse_level_degree = 2;
 
 Level make_level(const Block::Context& context, const NearFar& precision, std::span<const Piece> pieces,
                  const Surroundings& around, const CellTree::Cell& cell, int far_degree,
@@ -67,16 +67,17 @@ BlockLevel write_level(const Level& level, const std::optional<Level>& angle, Er
 BlockLevel coarse_level(const Block::Context& context, const CellTree::Cell& cell, const Allocate& allocate,
                         std::vector<PieceRule>* rules) {
   return write_level(make_level(context, context.coarse, context.pieces, context.tree.coarse_surroundings(cell), cell,
-                                coarse_far_degree, rules),
-                     make_angle_level(context, context.coarse, cell, coarse_far_degree), Errors::Counted, allocate);
+                                coarse_level_degree, rules),
+                     make_angle_level(context, context.coarse, cell, coarse_level_degree), Errors::Counted, allocate);
 }
 
 BlockLevel fine_level(const Block::Context& context, const CellTree::Cell& cell, const Allocate& allocate,
                       std::vector<PieceRule>* rules) {
   if (context.strands != nullptr) return write_stranded_level(make_stranded_level(context, cell), cell.half, allocate);
-  return write_level(
-      make_level(context, context.fine, context.pieces, context.tree.surroundings(cell), cell, field_degree, rules),
-      make_angle_level(context, context.fine, cell, field_degree), Errors::Stated, allocate);
+  return write_level(make_level(context, context.fine, context.pieces, context.tree.surroundings(cell), cell,
+                                context.fine.far_degree(), rules),
+                     make_angle_level(context, context.fine, cell, context.fine.far_degree()), Errors::Stated,
+                     allocate);
 }
 
 }  // namespace marrow

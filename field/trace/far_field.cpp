@@ -1,5 +1,6 @@
 #include "field/trace/far_field.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -8,10 +9,12 @@
 namespace marrow {
 namespace {
 
+constexpr int highest_degree = high_far_degree + 1;
+
 constexpr std::array<Monomial, monomial_count> make_monomials() {
   std::array<Monomial, monomial_count> m{};
   std::size_t i = 0;
-  for (int d = 0; d <= potential_degree; ++d)
+  for (int d = 0; d <= highest_degree; ++d)
     for (int a = d; a >= 0; --a)
       for (int b = d - a; b >= 0; --b) m[i++] = {a, b, d - a - b};
   return m;
@@ -40,49 +43,23 @@ double gegenbauer_constant(double l, int tensor_degree, int j) {
   return (j % 2 ? -1 : 1) * rising * integer_power(2, tensor_degree) / (factorial(j) * factorial(tensor_degree));
 }
 
-// Adds sum_k constant (x.r)^k |x|^(2j) for one j, whose moments begin at `t`; only terms that p can hold.
-void add_terms(const float* t, int j, int highest_tensor, double l, std::size_t size, Polynomial& p) {
-  for (std::size_t i = 0; i < monomials_to_degree(highest_tensor); ++i) {
-    const Monomial& m = table[i];
-    if (monomials_to_degree(m.degree() + 2 * j) > size) continue;
-    const double v = gegenbauer_constant(l, m.degree(), j) * multinomial(m) * static_cast<double>(t[i]);
-    // |x|^(2j) as a sum of products of j squares of coordinates
-    for (int a = 0; a < (j > 0 ? 3 : 1); ++a)
-      for (int b = 0; b < (j > 1 ? 3 : 1); ++b) {
-        int e[3] = {m.a, m.b, m.c};
-        if (j > 0) e[a] += 2;
-        if (j > 1) e[b] += 2;
-        p[index_of(e[0], e[1], e[2])] += v;
-      }
-  }
-}
-
-void moments_to_polynomial(const Moments& t, int exponent, std::size_t size, Polynomial& p) {
-  const double l = exponent / 2.0;
-  add_terms(t.data(), 0, 5, l, size, p);
-  add_terms(t.data() + 56, 1, 3, l, size, p);
-  add_terms(t.data() + 76, 2, 1, l, size, p);
-}
-
 // Monomials that differ only in the exponent of one axis, in its order: a polynomial of that axis alone.
 struct Line {
-  std::array<std::uint8_t, potential_degree + 1> at{};
-  int size = 0;
+  std::array<std::uint8_t, highest_degree + 1> at{};
 };
-constexpr std::size_t line_count = 21;  // pairs of exponents of the other two axes with sum <= 5
+// Pairs of exponents of the other two axes, by their sum, so that those of a smaller degree come first.
+constexpr std::size_t line_count = (highest_degree + 1) * (highest_degree + 2) / 2;
 
 constexpr std::array<std::array<Line, line_count>, 3> make_lines() {
   std::array<std::array<Line, line_count>, 3> lines{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::size_t n = 0;
-    for (int p = 0; p <= potential_degree; ++p)
-      for (int q = 0; p + q <= potential_degree; ++q, ++n)
-        for (int e = 0; e + p + q <= potential_degree; ++e) {
-          Line& line = lines[axis][n];
-          line.at[static_cast<std::size_t>(line.size++)] = static_cast<std::uint8_t>(axis == 0   ? index_of(e, p, q)
+    for (int sum = 0; sum <= highest_degree; ++sum)
+      for (int p = 0, q = sum; p <= sum; ++p, --q, ++n)
+        for (int e = 0; e + sum <= highest_degree; ++e)
+          lines[axis][n].at[static_cast<std::size_t>(e)] = static_cast<std::uint8_t>(axis == 0   ? index_of(e, p, q)
                                                                                      : axis == 1 ? index_of(p, e, q)
                                                                                                  : index_of(p, q, e));
-        }
   }
   return lines;
 }
@@ -90,17 +67,20 @@ constexpr std::array<std::array<Line, line_count>, 3> make_lines() {
 constexpr auto axis_lines = make_lines();
 
 // p(x) with x_axis = shift + x'_axis / 2, as a polynomial in x': repeated synthetic division along each line.
-void shift_axis(Polynomial& p, std::size_t axis, double shift) {
-  for (const Line& line : axis_lines[axis]) {
-    std::array<double, potential_degree + 1> c;
-    for (int i = 0; i < line.size; ++i) c[static_cast<std::size_t>(i)] = p[line.at[static_cast<std::size_t>(i)]];
-    for (int begin = 0; begin + 1 < line.size; ++begin)
-      for (int i = line.size - 2; i >= begin; --i)
-        c[static_cast<std::size_t>(i)] += shift * c[static_cast<std::size_t>(i) + 1];
-    double scale = 1;
-    for (int i = 0; i < line.size; ++i, scale *= 0.5)
-      p[line.at[static_cast<std::size_t>(i)]] = c[static_cast<std::size_t>(i)] * scale;
-  }
+void shift_axis(Polynomial& p, int degree, std::size_t axis, double shift) {
+  const auto* line = axis_lines[axis].data();
+  for (int sum = 0; sum <= degree; ++sum)
+    for (int k = 0; k <= sum; ++k, ++line) {
+      const int size = degree - sum + 1;
+      std::array<double, highest_degree + 1> c;
+      for (int i = 0; i < size; ++i) c[static_cast<std::size_t>(i)] = p[line->at[static_cast<std::size_t>(i)]];
+      for (int begin = 0; begin + 1 < size; ++begin)
+        for (int i = size - 2; i >= begin; --i)
+          c[static_cast<std::size_t>(i)] += shift * c[static_cast<std::size_t>(i) + 1];
+      double scale = 1;
+      for (int i = 0; i < size; ++i, scale *= 0.5)
+        p[line->at[static_cast<std::size_t>(i)]] = c[static_cast<std::size_t>(i)] * scale;
+    }
 }
 
 }  // namespace
@@ -109,17 +89,40 @@ const std::array<Monomial, monomial_count> monomials = table;
 
 std::size_t monomial_index(int a, int b, int c) { return index_of(a, b, c); }
 
-void add_moments(const Moments& f, const Moments& potential, int exponent, FarField& far) {
-  moments_to_polynomial(f, exponent, monomials_to_degree(field_degree), far.f);
-  moments_to_polynomial(potential, exponent, monomial_count, far.potential);
+// (x.r)^k |x|^(2j) as monomials: |x|^(2j) is a sum of squares of coordinates with multinomials.
+MomentTable::MomentTable(int exponent, int far_degree) : far_degree_(far_degree) {
+  const double l = exponent / 2.0;
+  for (int degree = 0; degree <= far_degree + 1; ++degree) {
+    std::size_t first_moment = 0;
+    for (int j = 0; 2 * j <= degree; ++j) {
+      const int k = degree - 2 * j;
+      for (std::size_t i = first_of_degree(k); i < monomials_to_degree(k); ++i)
+        for (int a = 0; a <= j; ++a)
+          for (int b = 0; a + b <= j; ++b) {
+            const Monomial m = table[i], squares{a, b, j - a - b};
+            const std::size_t to = index_of(m.a + 2 * squares.a, m.b + 2 * squares.b, m.c + 2 * squares.c);
+            terms_.push_back({static_cast<std::uint16_t>(first_moment + i), static_cast<std::uint16_t>(to),
+                              gegenbauer_constant(l, k, j) * multinomial(m) * multinomial(squares)});
+          }
+      first_moment += monomials_to_degree(far_degree + 1 - 2 * j);
+    }
+    if (degree == far_degree) field_terms_ = terms_.size();
+  }
+}
+
+void MomentTable::add(const float* f, const float* potential, FarField& far) const {
+  far.degree = std::max(far.degree, far_degree_);
+  for (std::size_t i = 0; i < field_terms_; ++i)
+    far.f[terms_[i].monomial] += terms_[i].factor * static_cast<double>(f[terms_[i].moment]);
+  for (const Term& t : terms_) far.potential[t.monomial] += t.factor * static_cast<double>(potential[t.moment]);
 }
 
 FarField FarField::of_child(int octant) const {
   FarField child = *this;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double shift = (octant >> axis) & 1 ? 0.5 : -0.5;
-    shift_axis(child.f, axis, shift);
-    shift_axis(child.potential, axis, shift);
+    shift_axis(child.f, degree, axis, shift);
+    shift_axis(child.potential, degree + 1, axis, shift);
   }
   for (double& c : child.potential) c *= 2;  // F / half: half is now half as long
   return child;
@@ -127,9 +130,10 @@ FarField FarField::of_child(int octant) const {
 
 FarField::Bounds FarField::bounds() const {
   Bounds b{f[0], f_error, {potential[1], potential[2], potential[3]}, gradient_error};
-  for (std::size_t i = 1; i < monomial_count; ++i) b.f_variation += std::fabs(f[i]);
+  for (std::size_t i = 1; i < monomials_to_degree(degree); ++i) b.f_variation += std::fabs(f[i]);
   // |grad x^a y^b z^c| <= a + b + c on the cube
-  for (std::size_t i = 4; i < monomial_count; ++i) b.gradient_variation += std::fabs(potential[i]) * table[i].degree();
+  for (std::size_t i = 4; i < monomials_to_degree(degree + 1); ++i)
+    b.gradient_variation += std::fabs(potential[i]) * table[i].degree();
   return b;
 }
 

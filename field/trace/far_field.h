@@ -1,5 +1,5 @@
-// What lies far from a cube, as Taylor polynomials about its centre: the field f (degree 4), and the
-// potential F with grad F = grad_S f (degree 5, so that grad_S f has degree 4 too).
+// What lies far from a cube, as Taylor polynomials about its centre: the field f (degree P = 4 or 6), and the
+// potential F with grad F = grad_S f (degree P + 1, so that grad_S f has degree P too).
 //
 // Coordinates are the cube's own: x = (p - centre) / half, so the cube is [-1, 1]^3. All lengths that
 // enter (radii, source positions) are in these units; f is dimensionless, and F here is F / half, so
@@ -8,6 +8,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "field/math/vec3.h"
 
@@ -16,8 +18,8 @@ namespace marrow {
 /// Monomials of degree <= k in three variables: binom(k + 3, 3).
 constexpr std::size_t monomials_to_degree(int k) { return static_cast<std::size_t>((k + 1) * (k + 2) * (k + 3) / 6); }
 
-inline constexpr int field_degree = 4, potential_degree = 5;
-inline constexpr std::size_t monomial_count = monomials_to_degree(potential_degree);  // 56
+inline constexpr int low_far_degree = 4, high_far_degree = 6;                            ///< P
+inline constexpr std::size_t monomial_count = monomials_to_degree(high_far_degree + 1);  // 120
 
 /// Exponents of the monomials x^a y^b z^c, sorted by degree.
 struct Monomial {
@@ -31,17 +33,29 @@ using Polynomial = std::array<double, monomial_count>;
 
 /// Turns moments of sources r about the origin into the Taylor coefficients of sum w |x - r|^-m.
 /// The expansion is the Gegenbauer series, |x - r|^-m = sum_k C_k^(m/2)(cos) |x|^k |r|^-(m+k). Its terms are
-/// (x.r)^k |x|^(2j) |r|^-(m+2k+2j) times a constant, so the moments needed are
-///   sum w r^(tensor k) |r|^-(m+2k+2j)   for j = 0, k = 0..5;  j = 1, k = 0..3;  j = 2, k = 0, 1
-/// (56 + 20 + 4 numbers), here without the constants, which are applied on the way. With y = r / |r|^2 and the field
-/// f_i = w |r|^-m of a source at the origin they are sums of f_i y^(tensor k) |y|^(2j).
-inline constexpr std::size_t moment_count = 56 + 20 + 4;
-using Moments = std::array<float, moment_count>;
-void add_moments(const Moments& f, const Moments& potential, int exponent, struct FarField&);
+/// (x.r)^k |x|^(2j) |r|^-(m+2k+2j) times a constant, so the moments needed for the degree P + 1 are
+///   sum w r^(tensor k) |r|^-(m+2k+2j)   for k + 2j <= P + 1
+/// (56 + 20 + 4 numbers for P = 4), here without the constants, which are applied on the way. With y = r / |r|^2 and
+/// the field f_i = w |r|^-m of a source at the origin they are sums of f_i y^(tensor k) |y|^(2j).
+class MomentTable {
+ public:
+  /// For one exponent m and one P.
+  MomentTable(int exponent, int far_degree);
+  void add(const float* f, const float* potential, struct FarField&) const;
+
+ private:
+  struct Term {
+    std::uint16_t moment, monomial;
+    double factor;
+  };
+  int far_degree_;
+  std::vector<Term> terms_;      // by the degree of their monomials
+  std::size_t field_terms_ = 0;  // those of degree P at most
+};
 
 struct FarField {
-  Polynomial f{};  ///< its coefficients of degree 5 are 0
-  Polynomial potential{};
+  int degree = 0;  ///< P: coefficients of higher degrees than P and P + 1 are 0
+  Polynomial f{}, potential{};
   double f_error = 0;         ///< |f - polynomial| over the cube, at most
   double gradient_error = 0;  ///< |grad_S f - gradient of polynomial| over the cube, at most
 

@@ -30,18 +30,18 @@ struct FarRange {
   FarRange(const float* far, std::size_t monomial_count) {
     for (std::size_t k = 0; k < 4; ++k) add(far, monomial_count, k);
   }
+  // A row of the second derivatives of x^e adds up to e_row (degree - 1).
   void add(const float* far, std::size_t monomial_count, std::size_t k) {
-    std::array<std::array<float, 3>, 3> second{};
+    std::array<float, 3> rows{};
     for (std::size_t i = 1; i < monomial_count; ++i) {
       const Monomial& m = monomials[i];
-      const int e[3] = {m.a, m.b, m.c};
-      const float c = std::fabs(far[4 * i + k]);
+      const float c = std::fabs(far[4 * i + k]), next = c * static_cast<float>(m.degree() - 1);
       slope[k] += static_cast<float>(m.degree()) * c;
-      for (std::size_t row = 0; row < 3; ++row)
-        for (std::size_t column = 0; column < 3; ++column)
-          second[row][column] += static_cast<float>(e[row] * (row == column ? e[row] - 1 : e[column])) * c;
+      rows[0] += static_cast<float>(m.a) * next;
+      rows[1] += static_cast<float>(m.b) * next;
+      rows[2] += static_cast<float>(m.c) * next;
     }
-    for (const auto& row : second) bend[k] = std::max(bend[k], 0.5001F * (row[0] + row[1] + row[2]));
+    bend[k] = 0.5001F * std::max({rows[0], rows[1], rows[2]});
   }
   static float length(const std::array<float, 4>& v) { return std::sqrt(v[1] * v[1] + v[2] * v[2] + v[3] * v[3]); }
 };
@@ -50,7 +50,7 @@ struct FarRange {
 
 // None of the monomials is above 1 in the cube.
 void truncate(FarField& far, int degree) {
-  for (std::size_t i = monomials_to_degree(degree); i < monomials_to_degree(field_degree); ++i) {
+  for (std::size_t i = monomials_to_degree(degree); i < monomials_to_degree(far.degree); ++i) {
     const auto c = far_coefficients(far, i);
     far.f_error += std::fabs(c[0]);
     far.gradient_error += length({c[1], c[2], c[3]});

@@ -1,6 +1,7 @@
 #include "field/trace/near_far.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "field/math/elementary.h"
@@ -9,12 +10,18 @@
 
 namespace marrow {
 
-NearFar::NearFar(int degree, ErrorBudget budget, const BlockKernels& kernels)
-    : degree_(degree), budget_(budget), kernels_(kernels), quadrature_(degree) {
+NearFar::NearFar(int degree, ErrorBudget budget, const BlockKernels& kernels, int far_degree)
+    : degree_(degree),
+      far_degree_(far_degree),
+      budget_(budget),
+      kernels_(kernels),
+      quadrature_(degree),
+      curve_moments_(degree, far_degree),
+      point_moments_(degree - 1, far_degree) {
   for (int i = 0; i <= table_size; ++i) {
     const double q = largest_ratio * i / table_size;
-    curve_.push_back({taylor_remainder(degree, 4, q), taylor_remainder(degree + 1, 4, q)});
-    point_.push_back({taylor_remainder(degree - 1, 4, q), taylor_remainder(degree, 4, q)});
+    curve_.push_back({taylor_remainder(degree, far_degree, q), taylor_remainder(degree + 1, far_degree, q)});
+    point_.push_back({taylor_remainder(degree - 1, far_degree, q), taylor_remainder(degree, far_degree, q)});
   }
 }
 
@@ -70,9 +77,9 @@ void NearFar::fold(const FarGroups& groups) const {
     const SourceGroups& sources = point ? groups.points : groups.curves;
     if (sources.group_count() == 0) continue;
     FarField& far = groups.far;
-    Moments f, potential;
-    kernels_.far_moments(sources.data(), sources.group_count(), f.data(), potential.data());
-    add_moments(f, potential, degree_ - (point ? 1 : 0), far);
+    std::array<float, most_far_moments> f, potential;
+    kernels_.far_moments(sources.data(), sources.group_count(), far_degree_, f.data(), potential.data());
+    (point ? point_moments_ : curve_moments_).add(f.data(), potential.data(), far);
     const double first = length({potential[1], potential[2], potential[3]});
     far.f_error += sum_rounding() * static_cast<double>(f[0]);
     far.gradient_error += sum_rounding() * 4 * degree_ * std::max(first, static_cast<double>(f[0]));
@@ -126,8 +133,11 @@ bool NearFar::add_if_far(const SourceNode& group, FarGroups& groups) const {
 
 FarQuery NearFar::query(bool points, Slight slight) const {
   const int m = degree_ - (points ? 1 : 0);
-  const auto binomial5 = [](int top) {
-    return static_cast<float>(top * (top - 1) * (top - 2) / 6 * (top - 3) / 4 * (top - 4) / 5);
+  // binom(m + P, P + 1), exact in double
+  const auto first_neglected = [this](int exponent) {
+    double binomial = 1;
+    for (int i = 0; i <= far_degree_; ++i) binomial = binomial * (exponent + i) / (i + 1);
+    return static_cast<float>(binomial);
   };
   FarQuery q{.center = {0, 0, 0},
              .radius = 1.732052F,  // sqrt(3), rounded up
@@ -136,13 +146,15 @@ FarQuery NearFar::query(bool points, Slight slight) const {
              .points = points,
              .field_budget = static_cast<float>(budget_.field),
              .gradient_budget = static_cast<float>(budget_.gradient),
-             .field_series = binomial5(m + 4),
-             .gradient_series = binomial5(m + 5)};
+             .far_degree = far_degree_,
+             .most_nodes = far_degree_ == low_far_degree ? 3 : most_far_nodes,
+             .field_series = first_neglected(m),
+             .gradient_series = first_neglected(m + 1)};
   if (slight == Slight::LeftOut) {
     q.slight_field = q.field_budget;
     q.slight_gradient = q.gradient_budget;
   }
-  for (int nodes = 1; nodes <= 3; ++nodes) {
+  for (int nodes = 1; nodes <= q.most_nodes; ++nodes) {
     const GaussError::Bound c = quadrature_.constants(nodes);
     q.field_rule[nodes] = static_cast<float>(c.field);
     q.gradient_rule[nodes] = static_cast<float>(c.gradient);
@@ -150,11 +162,8 @@ FarQuery NearFar::query(bool points, Slight slight) const {
   return q;
 }
 
-void NearFar::add_sums(const FarSums& sums, int exponent, FarField& far) const {
-  Moments f, potential;
-  std::copy_n(sums.f, moment_count, f.begin());
-  std::copy_n(sums.potential, moment_count, potential.begin());
-  add_moments(f, potential, exponent, far);
+void NearFar::add_sums(const FarSums& sums, bool points, FarField& far) const {
+  (points ? point_moments_ : curve_moments_).add(sums.f, sums.potential, far);
   far.f_error += static_cast<double>(sums.f_error) + sum_rounding() * static_cast<double>(sums.field);
   far.gradient_error += static_cast<double>(sums.g_error) + sum_rounding() * static_cast<double>(sums.gradient);
 }
@@ -168,7 +177,7 @@ std::vector<PieceIndex> NearFar::split(std::span<const Piece> pieces, std::span<
     std::vector<unsigned short> near_lanes(static_cast<std::size_t>(groups.count()));
     FarSums sums;
     kernels_.far_split(groups.data(), groups.count(), query(points, slight), near_lanes.data(), sums);
-    add_sums(sums, degree_ - (points ? 1 : 0), far);
+    add_sums(sums, points, far);
     std::size_t lane = 0;
     for (const PieceIndex i : candidates) {
       if (pieces[i].is_point() != points) continue;

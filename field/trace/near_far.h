@@ -35,7 +35,9 @@ struct ErrorBudget {
 /// group that stands for its pieces the second moments that its centre of mass neglects.
 class NearFar {
  public:
-  NearFar(int degree, ErrorBudget, const BlockKernels&);
+  /// `far_degree`: of the polynomials, low_far_degree or high_far_degree.
+  NearFar(int degree, ErrorBudget, const BlockKernels&, int far_degree);
+  int far_degree() const { return far_degree_; }
 
   /// Adds the far ones of `candidates` to `far` (in the coordinates of the cube) and returns the near ones: curves,
   /// then points, in their order.
@@ -66,15 +68,16 @@ class NearFar {
   bool add_if_far(const SourceNode&, FarGroups&) const;
   void fold(const FarGroups&) const;
   FarQuery query(bool points, Slight) const;
-  void add_sums(const FarSums&, int exponent, FarField&) const;
+  void add_sums(const FarSums&, bool points, FarField&) const;
   double sum_rounding() const;
 
   static constexpr int table_size = 256;
   static constexpr double largest_ratio = 0.5;  ///< of cube radius to distance: beyond it nothing is far
-  int degree_;
+  int degree_, far_degree_;
   ErrorBudget budget_;
   const BlockKernels& kernels_;
   GaussError quadrature_;
+  MomentTable curve_moments_, point_moments_;
   std::vector<Remainders> curve_, point_;  // psi at ratios i / table_size * largest_ratio
 };
 

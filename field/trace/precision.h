@@ -8,6 +8,9 @@
 
 namespace marrow {
 
+/// From here on few rays meet a cell, and cells are large.
+inline constexpr std::size_t many_pieces = 4'000;
+
 /// Of the coarse level, over the local radius: large enough to shorten its lists to a few sources, small enough to
 /// bring the fine level close to the root at once.
 inline constexpr double coarse_tolerance = 2e-2;
@@ -21,13 +24,19 @@ inline ErrorBudget budget_of(double tolerance, int degree) {
   return {.field = share, .gradient = share * degree};
 }
 
+/// Of the polynomials of the fine level. Of degree 6 they cost 2.4 times as much, and lists are a third shorter where
+/// cells are large: figures in the README.
+inline int fine_far_degree_for(std::size_t piece_count) {
+  return piece_count < many_pieces ? low_far_degree : high_far_degree;
+}
+
 /// Small cells have short lists, so rays are faster, but there are more of them to build. Processor time of a frame of
 /// 1024 x 1024 with shadow rays, the first one with all building, at half sides of 0.35, 0.5, 0.7 and 1 radii on the
 /// 867-segment workload: 4.4, 3.9, 3.3, 3.5 s first and 1.9, 2.4, 2.6, 3.1 s then. Of 10,000 hairs
 /// (22,000 pieces), few of whose cells meet more than ten rays, at 0.8, 1.2, 1.6 and 2.2: 22.9, 15.2, 13.7, 13.3 s
 /// and 3.5, 4.3, 4.2, 6.3 s.
 inline CellTreeSettings cells_for(std::size_t piece_count) {
-  return {.cell_size = piece_count < 4'000 ? 0.35 : 1.6, .tile_levels = piece_count < 50'000 ? 1 : 2};
+  return {.cell_size = piece_count < many_pieces ? 0.35 : 1.6, .tile_levels = piece_count < 50'000 ? 1 : 2};
 }
 
 }  // namespace marrow

@@ -18,7 +18,7 @@ StrandedLevel make_stranded_level(const Block::Context& context, const CellTree:
   std::sort(near.begin(), near.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::pair(strands.strand_of(a), a) < std::pair(strands.strand_of(b), b);
   });
-  StrandedLevel out{.level = {.curves = {}, .points = {}, .far = around.far, .far_degree = field_degree},
+  StrandedLevel out{.level = {.curves = {}, .points = {}, .far = around.far, .far_degree = context.fine.far_degree()},
                     .seen = strands.around(*cell.tile, cell.center, cell.half, near),
                     .groups = {},
                     .directions = {}};

@@ -35,7 +35,7 @@ FarValue value_of(const FarField& far, const Vec3d& x) {
 
 TEST(FarField, TaylorRemainderIsTheTailOfTheSeries) {
   for (int m = 2; m <= 8; ++m)
-    for (int degree = 0; degree <= 5; ++degree)
+    for (int degree = 0; degree <= 7; ++degree)
       for (double q = 0.05; q < 0.95; q += 0.05) {
         long double head = 0, term = 1;
         for (int k = 0; k <= degree; term *= static_cast<long double>(q) * (m + k) / (k + 1), ++k) head += term;
@@ -61,8 +61,10 @@ struct Split {
   FarField far;
 };
 
+int far_degree(int round) { return round % 2 ? low_far_degree : high_far_degree; }
+
 // A random blend seen from a small cube, with the budget of the fine level or a hundred times that.
-Split random_split(Random& random, int degree, double tolerance) {
+Split random_split(Random& random, int degree, double tolerance, int far_degree) {
   Split s{.blend = random_scene(random, {.degree = degree}, 12),
           .far_pieces = {},
           .center = random.vector(2),
@@ -71,7 +73,7 @@ Split random_split(Random& random, int degree, double tolerance) {
   const auto pieces = PieceCutter(degree, 2.0).cut(s.blend);
   std::vector<PieceIndex> all(pieces.size());
   std::iota(all.begin(), all.end(), PieceIndex{0});
-  const NearFar near_far(degree, budget_of(tolerance, degree), *block_kernels(""));
+  const NearFar near_far(degree, budget_of(tolerance, degree), *block_kernels(""), far_degree);
   const auto near = near_far.split(pieces, all, s.center, s.half, s.far);
   for (const PieceIndex i : all)
     if (std::find(near.begin(), near.end(), i) == near.end()) s.far_pieces.push_back(pieces[i]);
@@ -93,7 +95,7 @@ TEST(FarField, IsWithinItsStatedErrorOverTheCube) {
   std::size_t far_pieces = 0;
   for (int i = 0; i < 600; ++i) {
     const int n = random.whole(3, 7);
-    const Split s = random_split(random, n, i % 2 ? 1e-5 : 1e-3);
+    const Split s = random_split(random, n, i % 2 ? 1e-5 : 1e-3, far_degree(i / 2));
     far_pieces += s.far_pieces.size();
     for (int k = 0; k < 20; ++k) {
       Vec3d x = random.vector(1);
@@ -116,7 +118,7 @@ TEST(FarField, IsWithinItsStatedErrorOverTheCube) {
 TEST(FarField, OfAChildIsTheSameFunction) {
   Random random(42);
   for (int i = 0; i < 100; ++i) {
-    const Split s = random_split(random, random.whole(3, 7), 1e-3);
+    const Split s = random_split(random, random.whole(3, 7), 1e-3, far_degree(i));
     for (int octant = 0; octant < 8; ++octant) {
       const FarField child = s.far.of_child(octant);
       EXPECT_EQ(child.f_error, s.far.f_error);
@@ -132,7 +134,7 @@ TEST(FarField, OfAChildIsTheSameFunction) {
 TEST(FarField, BoundsContainTheField) {
   Random random(43);
   for (int i = 0; i < 300; ++i) {
-    const Split s = random_split(random, random.whole(3, 7), 1e-3);
+    const Split s = random_split(random, random.whole(3, 7), 1e-3, far_degree(i));
     const FarField::Bounds b = s.far.bounds();
     for (int k = 0; k < 20; ++k) {
       const Vec3d x = random.vector(1);

@@ -1,10 +1,12 @@
 // First roots against an independent oracle: none missed, none made up, all in place.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "field/trace/far_field.h"
 #include "tests/trace/all_cells.h"
 #include "tests/trace/oracle.h"
 #include "tests/trace/random_rays.h"
@@ -45,7 +47,8 @@ struct Tally {
 
 class Judge {
  public:
-  explicit Judge(const BlendField& field) : field_(field), oracle_(field_), cells_(field) {}
+  explicit Judge(const BlendField& field, std::optional<int> far_degree = {})
+      : field_(field), oracle_(field_), cells_(field, {.instruction_set = "", .far_degree = far_degree}) {}
 
   std::optional<double> check(Ray ray) {
     ++tally.rays;
@@ -117,7 +120,8 @@ TEST(FirstRoot, AgreesWithTheOracle) {
   Random random(71);
   Tally all;
   for (const Setting& s : settings()) {
-    Judge judge(random_scene(random, s, random.whole(2, 12)));
+    const int far_degree = random.whole(0, 1) == 0 ? low_far_degree : high_far_degree;
+    Judge judge(random_scene(random, s, random.whole(2, 12)), far_degree);
     for (int i = 0; i < 240; ++i) judge.check(any_ray(random, judge.field()));
     expect_clean(judge, s);
     all.add(judge.tally);
@@ -132,7 +136,8 @@ TEST(FirstRoot, AgreesWithTheOracleAtSilhouettes) {
   Random random(72);
   Tally all;
   for (const Setting& s : settings()) {
-    Judge judge(random_scene(random, s, random.whole(2, 7)));
+    const int far_degree = random.whole(0, 1) == 0 ? low_far_degree : high_far_degree;
+    Judge judge(random_scene(random, s, random.whole(2, 7)), far_degree);
     for (int i = 0; i < 7; ++i) {
       const Vec3d eye = random_direction(random) * 6;
       Vec3d hit = random.vector(1.2), miss = random.vector(3);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "field/trace/block_kernels.h"
+#include "field/trace/far_field.h"
 #include "tests/trace/all_cells.h"
 #include "tests/trace/random_rays.h"
 
@@ -24,11 +25,12 @@ struct Variant {
 };
 
 // The sets, and the best of them without memory for blocks, or with memory for recipes alone.
-std::vector<Variant> variants_here() {
+std::vector<Variant> variants_here(int far_degree) {
   std::vector<Variant> all;
   for (const std::string& name : sets_here()) all.push_back({name, {.instruction_set = name}});
   all.push_back({"nothing kept", {.instruction_set = "", .kept_bytes = 0, .recipe_bytes = 0}});
   all.push_back({"recipes", {.instruction_set = "", .kept_bytes = 0}});
+  for (Variant& v : all) v.options.far_degree = far_degree;
   return all;
 }
 
@@ -46,15 +48,17 @@ constexpr double angle_each = 0.125, by_direction = 0.25;
 
 TEST(InstructionSets, GiveTheSameBits) {
   ASSERT_GE(sets_here().size(), 2U) << "nothing to compare on this machine";
-  const auto variants = variants_here();
   Random random(91);
   int rays = 0, hits = 0;
-  const Setting settings[] = {{3, 1.0}, {4, contact_alpha(4)}, {4, -0.4},        {5, 0},
-                              {7, 1.2}, {4, angle_each},       {4, by_direction}};
+  const Setting settings[] = {{3, 1.0}, {4, contact_alpha(4)}, {4, -0.4},         {5, 0},
+                              {7, 1.2}, {4, angle_each},       {4, by_direction}, {4, 0.8}};
+  int far_degree = high_far_degree;  // in turns
   for (const Setting& s : settings) {
     const BlendField blend = s.alpha == angle_each     ? random_angled_scene(random, s, 4)
                              : s.alpha == by_direction ? random_stranded_scene(random, s, 5)
                                                        : random_scene(random, s, 4);
+    const auto variants = variants_here(far_degree);
+    far_degree = far_degree == high_far_degree ? low_far_degree : high_far_degree;
     std::vector<AllCells> tracers;
     for (const Variant& v : variants) tracers.emplace_back(blend, v.options);
     const BlendTracer& first = tracers.front().tracer();
@@ -85,7 +89,7 @@ TEST(InstructionSets, GiveTheSameBits) {
     }
   }
   std::cout << "  " << rays << " rays, " << hits << " hits on";
-  for (const Variant& v : variants) std::cout << " / " << v.name;
+  for (const Variant& v : variants_here(low_far_degree)) std::cout << " / " << v.name;
   std::cout << '\n';
   EXPECT_GT(hits, rays / 10);
 }

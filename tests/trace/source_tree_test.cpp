@@ -132,7 +132,8 @@ TEST(SourceTree, SplitsAreWithinTheirStatedErrors) {
   for (int round = 0; round < 60; ++round) {
     const int n = random.whole(3, 7);
     const SourceTree tree = tree_of(clumps(random, n, 400));
-    const NearFar near_far(n, budget_of(round % 2 ? 1e-5 : 2e-2, n), *block_kernels(""));
+    const NearFar near_far(n, budget_of(round % 2 ? 1e-5 : 2e-2, n), *block_kernels(""),
+                           round / 2 % 2 ? low_far_degree : high_far_degree);
     const Vec3d center = random.vector(8);
     const double half = exp(random.between(-4, 1));
     FarField far;
@@ -174,7 +175,7 @@ TEST(SourceTree, SplitsAreWithinTheirStatedErrors) {
 TEST(SourceTree, FarAwayAFewGroupsAreEnough) {
   Random random(64);
   const SourceTree tree = tree_of(clumps(random, 4, 4000));
-  const NearFar fine(4, budget_of(1e-5, 4), *block_kernels(""));
+  const NearFar fine(4, budget_of(1e-5, 4), *block_kernels(""), low_far_degree);
   FarField far;
   EXPECT_TRUE(fine.split(tree, tree.roots(), {300, 0, 0}, 1, -1, far).empty());
   EXPECT_GT(far.f[0], 0);

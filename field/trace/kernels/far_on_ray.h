@@ -42,10 +42,17 @@ inline auto nested_polynomial(const Far& far, const X& x, const Y& y, const Z& z
   else return nested_polynomial<Degree, A + 1>(far, x, y, z) * x + here;
 }
 
+// The degrees that levels have.
+template <class Far, class X, class Y, class Z>
+inline auto far_polynomial(const FieldLevel& level, const Far& far, const X& x, const Y& y, const Z& z) {
+  return level.far_degree == 2   ? nested_polynomial<2>(far, x, y, z)
+         : level.far_degree == 4 ? nested_polynomial<4>(far, x, y, z)
+                                 : nested_polynomial<6>(far, x, y, z);
+}
+
 // (f, Gx, Gy, Gz) of the far field at a point.
 inline V4 far_at(const FieldLevel& level, float x, float y, float z) {
-  const AllFour far{level.far};
-  return level.far_degree == 2 ? nested_polynomial<2>(far, x, y, z) : nested_polynomial<4>(far, x, y, z);
+  return far_polynomial(level, AllFour{level.far}, x, y, z);
 }
 
 // A value and its derivative along a ray. Value: V4, all four of one ray; V16, one of each of sixteen.
@@ -82,9 +89,7 @@ inline FarSlope<Value> operator+(const FarSlope<Value>& p, const FarSlope<Value>
 
 // The far field at (x, y, z), with its derivatives, added to the sums.
 inline void add_far(const FieldLevel& level, const OnRay<float> (&p)[3], RaySums<float>& s) {
-  const AllFour coefficients{level.far};
-  const FarSlope<V4> far = level.far_degree == 2 ? nested_polynomial<2>(coefficients, p[0], p[1], p[2])
-                                                 : nested_polynomial<4>(coefficients, p[0], p[1], p[2]);
+  const FarSlope<V4> far = far_polynomial(level, AllFour{level.far}, p[0], p[1], p[2]);
   s.f += far.value[0];
   s.df += far.slope[0];
   for (int i = 0; i < 3; ++i) {
@@ -94,11 +99,7 @@ inline void add_far(const FieldLevel& level, const OnRay<float> (&p)[3], RaySums
 }
 
 inline void add_far(const FieldLevel& level, const OnRay<V16> (&p)[3], RaySums<V16>& s) {
-  const auto part = [&](int k) {
-    const OneOfFour coefficients{level.far + k};
-    return level.far_degree == 2 ? nested_polynomial<2>(coefficients, p[0], p[1], p[2])
-                                 : nested_polynomial<4>(coefficients, p[0], p[1], p[2]);
-  };
+  const auto part = [&](int k) { return far_polynomial(level, OneOfFour{level.far + k}, p[0], p[1], p[2]); };
   const FarSlope<V16> f = part(0);
   s.f += f.value;
   s.df += f.slope;

@@ -1,48 +1,55 @@
 // Moments of far sources (far_field.h), and bounds of the field over the octants of a cube. Part of
 // block_kernels_<set>.cpp.
 
-// All monomials of degree <= 5, each a smaller one times a coordinate, in the order of far_field.h.
-inline void fill_monomials(V16 x, V16 y, V16 z, V16 (&m)[56]) {
+constexpr int monomials_to(int degree) { return (degree + 1) * (degree + 2) * (degree + 3) / 6; }
+
+// All monomials of degree <= Degree, each a smaller one times a coordinate, in the order of far_field.h.
+template <int Degree>
+inline void fill_monomials(V16 x, V16 y, V16 z, V16 (&m)[monomials_to(Degree)]) {
   m[0] = splat(1);
   m[1] = x, m[2] = y, m[3] = z;
-  m[4] = x * x, m[5] = x * y, m[6] = x * z, m[7] = y * y, m[8] = y * z, m[9] = z * z;
-  for (int i = 0; i < 6; ++i) m[10 + i] = x * m[4 + i];
-  for (int i = 0; i < 3; ++i) m[16 + i] = y * m[7 + i];
-  m[19] = z * m[9];
-  for (int i = 0; i < 10; ++i) m[20 + i] = x * m[10 + i];
-  for (int i = 0; i < 4; ++i) m[30 + i] = y * m[16 + i];
-  m[34] = z * m[19];
-  for (int i = 0; i < 15; ++i) m[35 + i] = x * m[20 + i];
-  for (int i = 0; i < 5; ++i) m[50 + i] = y * m[30 + i];
-  m[55] = z * m[34];
+  for (int d = 2; d <= Degree; ++d) {
+    const int before = monomials_to(d - 2), here = monomials_to(d - 1), count = here - before;
+    V16* const to = m + here;
+    for (int i = 0; i < count; ++i) to[i] = x * m[before + i];
+    for (int i = 0; i < d; ++i) to[count + i] = y * m[here - d + i];
+    to[count + d] = z * m[here - 1];
+  }
 }
 
-// For one j the sums of f y^k |y|^(2j) over k <= Degree, without their constant factors; `field` is f |y|^(2j).
-template <int Degree>
-inline void accumulate_tensor(const V16 (&power)[56], V16 field, V16 tau, V16* f, V16* potential) {
-  constexpr int size[] = {1, 4, 10, 20, 35, 56};
-  for (int i = 0; i < size[Degree]; ++i) {
+// The number of moments for the degree P + 1 = Degree, see MomentTable.
+constexpr int moments_to(int degree) { return degree < 0 ? 0 : monomials_to(degree) + moments_to(degree - 2); }
+
+// For one j after the other the sums of f y^k |y|^(2j) over k + 2j <= Degree, without their constant factors; those of
+// the field stop at a degree less. `field` is f |y|^(2j).
+template <int Degree, int Monomials>
+inline void accumulate_moments(const V16 (&power)[Monomials], V16 field, V16 squared, V16 tau, V16* f, V16* potential) {
+  for (int i = 0; i < monomials_to(Degree - 1); ++i) {
     const V16 v = field * power[i];
     f[i] += v;
     potential[i] += v * tau;
   }
+  const V16 field_tau = field * tau;
+  for (int i = monomials_to(Degree - 1); i < monomials_to(Degree); ++i) potential[i] += field_tau * power[i];
+  if constexpr (Degree >= 2)
+    accumulate_moments<Degree - 2>(power, field * squared, squared, tau, f + monomials_to(Degree),
+                                   potential + monomials_to(Degree));
 }
 
+template <int FarDegree>
 struct MomentSums {
-  V16 f[far_moment_count] = {}, potential[far_moment_count] = {};
+  static constexpr int degree = FarDegree + 1, count = moments_to(degree);
+  static_assert(count <= most_far_moments && count % 8 == 0);
+  V16 f[count] = {}, potential[count] = {};
 
   // One inverted source in each lane.
   void add(V16 x, V16 y, V16 z, V16 field, V16 tau) {
-    V16 power[56];
-    fill_monomials(x, y, z, power);
-    const V16 squared = x * x + y * y + z * z, field2 = field * squared;
-    accumulate_tensor<5>(power, field, tau, f, potential);
-    accumulate_tensor<3>(power, field2, tau, f + 56, potential + 56);
-    accumulate_tensor<1>(power, field2 * squared, tau, f + 76, potential + 76);
+    V16 power[monomials_to(degree)];
+    fill_monomials<degree>(x, y, z, power);
+    accumulate_moments<degree>(power, field, x * x + y * y + z * z, tau, f, potential);
   }
   void write(float* f_out, float* potential_out) const {
-    static_assert(far_moment_count == 80);
-    for (int i = 0; i < far_moment_count; i += 8) {  // eight sums of each kind at a time
+    for (int i = 0; i < count; i += 8) {  // eight sums of each kind at a time
       V16 a[12] = {};
       float s[16];
       for (int k = 0; k < 8; ++k) a[k] = f[i + k];
@@ -55,11 +62,17 @@ struct MomentSums {
   }
 };
 
-void far_moments(const float* group, int groups, float* f_out, float* potential_out) {
-  MomentSums sums;
+template <int FarDegree>
+inline void sum_moments(const float* group, int groups, float* f_out, float* potential_out) {
+  MomentSums<FarDegree> sums;
   for (int k = 0; k < groups; ++k, group += floats_per_group)
     sums.add(load(group), load(group + 16), load(group + 32), load(group + 48), load(group + 64));
   sums.write(f_out, potential_out);
+}
+
+void far_moments(const float* groups, int count, int far_degree, float* f_out, float* potential_out) {
+  if (far_degree == 4) sum_moments<4>(groups, count, f_out, potential_out);
+  else sum_moments<6>(groups, count, f_out, potential_out);
 }
 
 // One kind of pieces (one exponent) against one ball. Distances are lowered and raised by what rounding can do to

@@ -42,8 +42,7 @@ inline FarSlopes<3> far_slopes(const FieldLevel& level, const float p[3]) {
   const Coordinate<3> x{p[0]};
   const Coordinate<2> y{p[1]};
   const Coordinate<1> z{p[2]};
-  const AllFour far{level.far};
-  return level.far_degree == 2 ? nested_polynomial<2>(far, x, y, z) : nested_polynomial<4>(far, x, y, z);
+  return far_polynomial(level, AllFour{level.far}, x, y, z);
 }
 
 // A / f of angle_field.h, as in march.h.

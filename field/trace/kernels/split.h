@@ -1,10 +1,11 @@
 // Which of some pieces are far from a ball, and the moments of those that are. Part of block_kernels_<set>.cpp.
 
-// The tail sum_{k>=5} binom(e+k-1, k) q^k of the series of (1-q)^-e (tracing.md B5): its terms fall at least by the
-// first ratio, so a geometric series bounds it. `first` is binom(e+4, 5). Negative: no bound.
+// The tail sum_{k>P} binom(e+k-1, k) q^k of the series of (1-q)^-e (tracing.md B5): its terms fall at least by the
+// first ratio, so a geometric series bounds it. `first` is binom(e+P, P+1). Negative: no bound.
+template <int FarDegree>
 inline V16 series_tail(V16 q, int exponent, float first) {
-  const V16 q2 = q * q, rest = 1.0F - q * (static_cast<float>(exponent + 5) / 6);
-  return rest > 0.05F ? first * q2 * q2 * q / rest : V16{} - 1.0F;
+  const V16 rest = 1.0F - q * (static_cast<float>(exponent + FarDegree + 1) / (FarDegree + 2));
+  return rest > 0.05F ? first * power_of(q, FarDegree + 1) / rest : V16{} - 1.0F;
 }
 
 struct FarLanes {
@@ -16,7 +17,7 @@ struct FarLanes {
 };
 
 // Distances are lowered by what rounding can do to numbers of the size of the coordinates.
-template <int Exponent>
+template <int Exponent, int FarDegree>
 inline FarLanes far_lanes(const float* group, const FarQuery& query) {
   const int m = Exponent > 0 ? Exponent : query.exponent;
   const float* c = query.center;
@@ -32,7 +33,8 @@ inline FarLanes far_lanes(const float* group, const FarQuery& query) {
   out.distance = d;
   out.field = share * inverse_power<Exponent>(high * high, m);
   out.gradient = static_cast<float>(m) * out.field * high;
-  const V16 f_tail = series_tail(q, m, query.field_series), g_tail = series_tail(q, m + 1, query.gradient_series);
+  const V16 f_tail = series_tail<FarDegree>(q, m, query.field_series),
+            g_tail = series_tail<FarDegree>(q, m + 1, query.gradient_series);
   out.f_error = out.field * f_tail;
   out.g_error = out.gradient * g_tail;
   V16 far = q <= 0.5F ? splat(1) : V16{};
@@ -45,7 +47,7 @@ inline FarLanes far_lanes(const float* group, const FarQuery& query) {
     out.far = far;
     return out;
   }
-  // Gauss-Legendre rules of 1, 2 and 3 nodes at the least distance to the ball (quadrature.h).
+  // Gauss-Legendre rules of few nodes at the least distance to the ball (quadrature.h).
   const V16 near = larger(d - query.radius, splat(1e-20F)), near_high = tau / near, ratio = size / near;
   const V16 slope = taper < 0.0F ? V16{} - taper : taper;
   const V16 widened = 1.0F + slope * near / larger(size * tau, splat(1e-30F));
@@ -53,13 +55,13 @@ inline FarLanes far_lanes(const float* group, const FarQuery& query) {
   for (int k = 1; k < m; ++k) scale = scale * widened;
   const V16 g_scale = scale * widened * near_high;
   V16 shrink = splat(1);
-  for (int nodes = 1; nodes <= 3; ++nodes) {
+  for (int nodes = 1; nodes <= query.most_nodes; ++nodes) {
     shrink = shrink * ratio * ratio;
     const V16 f = query.field_rule[nodes] * scale * shrink, g = query.gradient_rule[nodes] * g_scale * shrink;
     V16 fits = f <= 0.25F * query.field_budget ? far : V16{};
     fits = g <= 0.25F * query.gradient_budget ? fits : V16{};
     const bool all = !(largest_lane(far - fits) > 0);
-    if (!all && nodes < 3) continue;
+    if (!all && nodes < query.most_nodes) continue;
     out.nodes = nodes;
     out.far = fits;
     out.f_error += f;
@@ -94,10 +96,25 @@ inline bool is_thin_beside(const float* group, const FarQuery& query) {
   return 6 * largest_lane(load(group + 144)) < query.radius;
 }
 
-template <int Exponent>
-inline void add_far_nodes(const float* group, const FarQuery& query, const FarLanes& lanes_far, MomentSums& sums) {
-  constexpr float position[4][3] = {{}, {0.5F}, {0.21132487F, 0.78867513F}, {0.11270167F, 0.5F, 0.88729833F}};
-  constexpr float weight[4][3] = {{}, {1}, {0.5F, 0.5F}, {5 / 18.0F, 8 / 18.0F, 5 / 18.0F}};
+// Gauss-Legendre rules on [0, 1].
+inline constexpr float gauss_position[most_far_nodes + 1][most_far_nodes] = {
+    {},
+    {0.5F},
+    {0.21132487F, 0.78867513F},
+    {0.11270167F, 0.5F, 0.88729833F},
+    {0.06943184F, 0.33000948F, 0.66999052F, 0.93056816F},
+    {0.04691008F, 0.23076534F, 0.5F, 0.76923466F, 0.95308992F}};
+inline constexpr float gauss_weight[most_far_nodes + 1][most_far_nodes] = {
+    {},
+    {1},
+    {0.5F, 0.5F},
+    {5 / 18.0F, 8 / 18.0F, 5 / 18.0F},
+    {0.17392742F, 0.32607258F, 0.32607258F, 0.17392742F},
+    {0.11846344F, 0.23931434F, 0.28444444F, 0.23931434F, 0.11846344F}};
+
+template <int Exponent, int FarDegree>
+inline void add_far_nodes(const float* group, const FarQuery& query, const FarLanes& lanes_far,
+                          MomentSums<FarDegree>& sums) {
   const int m = Exponent > 0 ? Exponent : query.exponent, nodes = lanes_far.nodes;
   const float* c = query.center;
   const V16 x = load(group) - c[0], y = load(group + 16) - c[1], z = load(group + 32) - c[2];
@@ -106,24 +123,24 @@ inline void add_far_nodes(const float* group, const FarQuery& query, const FarLa
   const V16 first = taper > 0.0F ? tau - taper : tau;  // radius at `from`; tau is the larger one
   const float per_half = 1 / query.half;
   for (int k = 0; k < nodes; ++k) {
-    const float s = query.points ? 0 : position[nodes][k];
+    const float s = query.points ? 0 : gauss_position[nodes][k];
     const V16 rx = x + ax * s, ry = y + ay * s, rz = z + az * s, radius = first + taper * s;
     const V16 inverse2 = lanes_far.far > 0.0F ? 1.0F / (rx * rx + ry * ry + rz * rz) : V16{};
     const V16 ratio2 = radius * radius * inverse2;
     // w |r|^-m, w = share tau tau(s)^(n-1) for curves of m = n; share tau^m for points
     const V16 lift = query.points ? splat(1) : tau / radius;
-    const V16 field = weight[nodes][k] * share * lift * inverse_power<Exponent>(ratio2, m);
+    const V16 field = gauss_weight[nodes][k] * share * lift * inverse_power<Exponent>(ratio2, m);
     const V16 scale = inverse2 * query.half;
     sums.add(rx * scale, ry * scale, rz * scale, lanes_far.far > 0.0F ? field : V16{}, radius * per_half);
   }
 }
 
-template <int Exponent>
+template <int Exponent, int FarDegree>
 inline void split_groups(const float* group, int groups, const FarQuery& query, unsigned short* near, FarSums& out) {
-  MomentSums sums;
+  MomentSums<FarDegree> sums;
   V16 totals[12] = {};
   for (int k = 0; k < groups; ++k, group += floats_per_piece_group) {
-    const FarLanes lanes_far = far_lanes<Exponent>(group, query);
+    const FarLanes lanes_far = far_lanes<Exponent, FarDegree>(group, query);
     unsigned bits = 0;
     for (int i = 0; i < lanes; ++i) bits |= (lanes_far.far[i] > 0 ? 0U : 1U) << i;
     near[k] = static_cast<unsigned short>(bits);
@@ -139,7 +156,7 @@ inline void split_groups(const float* group, int groups, const FarQuery& query, 
     totals[1] += lanes_far.far > 0.0F ? lanes_far.g_error : V16{};
     totals[2] += lanes_far.far > 0.0F ? lanes_far.field : V16{};
     totals[3] += lanes_far.far > 0.0F ? lanes_far.gradient : V16{};
-    add_far_nodes<Exponent>(group, query, lanes_far, sums);
+    add_far_nodes<Exponent, FarDegree>(group, query, lanes_far, sums);
   }
   float s[16];
   sum_lanes(totals, s);
@@ -150,8 +167,14 @@ inline void split_groups(const float* group, int groups, const FarQuery& query, 
   sums.write(out.f, out.potential);
 }
 
+template <int FarDegree>
+inline void split_to_degree(const float* groups, int count, const FarQuery& query, unsigned short* near, FarSums& out) {
+  if (query.exponent == 4) split_groups<4, FarDegree>(groups, count, query, near, out);
+  else if (query.exponent == 3) split_groups<3, FarDegree>(groups, count, query, near, out);
+  else split_groups<0, FarDegree>(groups, count, query, near, out);
+}
+
 void far_split(const float* groups, int count, const FarQuery& query, unsigned short* near, FarSums& out) {
-  if (query.exponent == 4) split_groups<4>(groups, count, query, near, out);
-  else if (query.exponent == 3) split_groups<3>(groups, count, query, near, out);
-  else split_groups<0>(groups, count, query, near, out);
+  if (query.far_degree == 4) split_to_degree<4>(groups, count, query, near, out);
+  else split_to_degree<6>(groups, count, query, near, out);
 }
