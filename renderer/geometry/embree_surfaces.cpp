@@ -138,17 +138,34 @@ bool EmbreeSurfaces::occluded(const Ray& ray) const {
   return nearest_plane(ray).plane != nullptr || finest().occluded(ray);
 }
 
-void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits) const {
-  std::array<PlaneHit, RayPacket::size> planes;
-  RayPacket before_planes(rays);
+EmbreeSurfaces::BeforePlanes EmbreeSurfaces::before_planes(std::span<const Ray> rays) const {
+  BeforePlanes before{.planes = {}, .packet = RayPacket(rays)};
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    planes[i] = nearest_plane(rays[i]);
-    before_planes.t_max[i] = std::min(rays[i].t_max, planes[i].t);
+    before.planes[i] = nearest_plane(rays[i]);
+    before.packet.t_max[i] = std::min(rays[i].t_max, before.planes[i].t);
   }
+  return before;
+}
+
+void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits) const {
+  const auto [planes, packet] = before_planes(rays);
   PartHierarchy::Hits found;
-  finest().first_hits(before_planes, lanes_of(rays), found);
+  finest().first_hits(packet, lanes_of(rays), found);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (found[i].begins_inside) found[i] = whole_->first_hit(before_planes.ray(i), nullptr);
+    if (found[i].begins_inside) found[i] = whole_->first_hit(packet.ray(i), nullptr);
+    hits[i] = hit_of(found[i], planes[i], rays[i]);
+  }
+}
+
+void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits,
+                                std::span<RayRecord> records) const {
+  thread_local PartHierarchy::Logs visits;
+  for (auto& of_ray : visits) of_ray.clear();
+  const auto [planes, packet] = before_planes(rays);
+  PartHierarchy::Hits found;
+  whole_->first_hits(packet, lanes_of(rays), found, &visits);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    records[i] = record_of(visits[i], found[i].undecided, std::min(found[i].t, planes[i].t));
     hits[i] = hit_of(found[i], planes[i], rays[i]);
   }
 }

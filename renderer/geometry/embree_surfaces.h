@@ -1,6 +1,7 @@
 // Solids under one Embree hierarchy, and infinite planes beside it.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <limits>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "field/base/result.h"
+#include "field/math/ray_packet.h"
 #include "renderer/geometry/embree_handles.h"
 #include "renderer/geometry/part_hierarchy.h"
 #include "renderer/geometry/solid.h"
@@ -38,6 +40,7 @@ class EmbreeSurfaces final : public Surfaces {
   std::optional<SurfaceHit> first_hit(const Ray&, RayRecord&) const override;
   bool occluded(const Ray&) const override;
   void first_hits(std::span<const Ray>, std::span<std::optional<SurfaceHit>>) const override;
+  void first_hits(std::span<const Ray>, std::span<std::optional<SurfaceHit>>, std::span<RayRecord>) const override;
   unsigned which_occluded(std::span<const Ray>) const override;
   Box3 bounds() const override { return extent_; }
   void refine() const override;
@@ -61,6 +64,11 @@ class EmbreeSurfaces final : public Surfaces {
     double t = std::numeric_limits<double>::infinity();
   };
   PlaneHit nearest_plane(const Ray&) const;
+  struct BeforePlanes {
+    std::array<PlaneHit, RayPacket::size> planes;
+    RayPacket packet;  // the rays up to their planes
+  };
+  BeforePlanes before_planes(std::span<const Ray>) const;
   const PartHierarchy& finest() const { return *finest_.load(std::memory_order_acquire); }
   std::optional<SurfaceHit> hit_of(const PartHierarchy::Hit&, const PlaneHit&, const Ray&) const;
 

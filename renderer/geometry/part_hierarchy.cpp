@@ -213,16 +213,17 @@ bool PartHierarchy::occluded(const Ray& ray) const {
   return r.tfar < 0;
 }
 
-void PartHierarchy::first_hits(const RayPacket& packet, unsigned lanes, Hits& hits) const {
+void PartHierarchy::first_hits(const RayPacket& packet, unsigned lanes, Hits& hits, Logs* logs) const {
+  const auto log_of = [logs](std::size_t lane) { return logs == nullptr ? nullptr : &(*logs)[lane]; };
   if (std::popcount(lanes) < worth_a_packet) {
-    for_each_lane(lanes,
-                  [&](std::size_t lane) { hits[lane] = first_hit(packet.ray(lane), nullptr); });
+    for_each_lane(lanes, [&](std::size_t lane) { hits[lane] = first_hit(packet.ray(lane), log_of(lane)); });
     return;
   }
   RTCRayHit16 rayhits{};
   Starts starts(padded_bounds_, packet, lanes, rayhits.ray);
   std::fill_n(rayhits.hit.geomID, RayPacket::size, RTC_INVALID_GEOMETRY_ID);
   std::fill_n(rayhits.hit.instID[0], RayPacket::size, RTC_INVALID_GEOMETRY_ID);
+  for_each_lane(lanes, [&](std::size_t lane) { starts.visits[lane].logs = log_of(lane); });
   Query q(starts.visits.data(), &packet);
   rtcIntersect16(starts.valid.data(), scene_.get(), &q, &rayhits);
   for_each_lane(lanes, [&](std::size_t lane) { hits[lane] = starts.visits[lane].best; });
@@ -231,9 +232,8 @@ void PartHierarchy::first_hits(const RayPacket& packet, unsigned lanes, Hits& hi
 unsigned PartHierarchy::occluded(const RayPacket& packet, unsigned lanes) const {
   unsigned hidden = 0;
   if (std::popcount(lanes) < worth_a_packet) {
-    for_each_lane(lanes, [&](std::size_t lane) {
-      hidden |= static_cast<unsigned>(occluded(packet.ray(lane))) << lane;
-    });
+    for_each_lane(lanes,
+                  [&](std::size_t lane) { hidden |= static_cast<unsigned>(occluded(packet.ray(lane))) << lane; });
     return hidden;
   }
   RTCRay16 rays{};

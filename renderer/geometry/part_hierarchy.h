@@ -33,8 +33,9 @@ class PartHierarchy {
   /// shows nowhere. `logs`, if any, is told of all parts visited.
   Hit first_hit(const Ray&, std::vector<ElementLog>* logs) const;
   bool occluded(const Ray&) const;
+  using Logs = std::array<std::vector<ElementLog>, RayPacket::size>;
   /// The same for the rays of `lanes` (bit i is lane i), to the same bits; `hits` of other lanes are left as they are.
-  void first_hits(const RayPacket&, unsigned lanes, Hits& hits) const;
+  void first_hits(const RayPacket&, unsigned lanes, Hits& hits, Logs* logs = nullptr) const;
   /// Those of `lanes` that are occluded.
   unsigned occluded(const RayPacket&, unsigned lanes) const;
   std::size_t part_count() const;

@@ -46,6 +46,11 @@ class Surfaces {
   virtual void first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits) const {
     for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = first_hit(rays[i]);
   }
+  /// The same, and what each took, as first_hit() tells.
+  virtual void first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits,
+                          std::span<RayRecord> records) const {
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = first_hit(rays[i], records[i]);
+  }
   /// What occluded() says of each of at most RayPacket::size rays: bit i is of rays[i].
   virtual unsigned which_occluded(std::span<const Ray> rays) const {
     unsigned hidden = 0;

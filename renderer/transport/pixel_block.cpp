@@ -42,16 +42,17 @@ void store(CentreHit& centre, const SurfaceHit& hit, const Camera& camera) {
   centre.object = hit.object.value + 1;
 }
 
-// One by one, because each tells what it took.
+// Each tells what it took.
 void trace_centres(const RenderScene& scene, Block& block) {
+  for (std::size_t i = 0; i < block.pixels.size(); ++i)
+    block.rays[i] = scene.camera.ray(block.pixels[i].middle_x, block.pixels[i].middle_y);
+  std::vector<RayRecord> records(block.rays.size());
+  scene.surfaces->first_hits(block.rays, block.hits, records);
   for (std::size_t i = 0; i < block.pixels.size(); ++i) {
-    const auto& [x, y, sums] = block.pixels[i];
-    RayRecord record;
-    block.rays[i] = scene.camera.ray(x, y);
-    block.hits[i] = scene.surfaces->first_hit(block.rays[i], record);
-    sums->centre.evaluations = record.evaluations;
-    sums->centre.certified = record.certified;
-    if (block.hits[i]) store(sums->centre, *block.hits[i], scene.camera);
+    CentreHit& centre = block.pixels[i].sums->centre;
+    centre.evaluations = records[i].evaluations;
+    centre.certified = records[i].certified;
+    if (block.hits[i]) store(centre, *block.hits[i], scene.camera);
   }
 }
 

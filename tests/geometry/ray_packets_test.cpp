@@ -113,6 +113,9 @@ struct Comparison {
   void check(const Surfaces& surfaces, std::span<const Ray> batch) {
     Hits found;
     surfaces.first_hits(batch, found);
+    Hits recorded;
+    std::array<RayRecord, RayPacket::size> records;
+    surfaces.first_hits(batch, recorded, records);
     const unsigned occluded = surfaces.which_occluded(batch);
     EXPECT_EQ(occluded >> batch.size(), 0u);
     for (std::size_t i = 0; i < batch.size(); ++i, ++rays) {
@@ -120,6 +123,9 @@ struct Comparison {
       const bool hides = surfaces.occluded(batch[i]);
       hits += expected.has_value();
       hidden += hides;
+      RayRecord record;
+      differ += !same(surfaces.first_hit(batch[i], record), recorded[i]) ||
+                record.evaluations != records[i].evaluations || record.certified != records[i].certified;
       differ += !same(expected, found[i]) || hides != static_cast<bool>(occluded >> i & 1);
     }
   }
