@@ -6,6 +6,7 @@
 // Everything is in block coordinates: x = (p - centre) / half. In them f and grad_S f keep their values.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string_view>
@@ -94,6 +95,12 @@ struct PacketView {
 struct TileLayers {
   double center[3], half;              ///< of the tile
   float first_plane[3], end_plane[3];  ///< in its coordinates
+};
+
+/// What the search of a packet needs beside the stack, which may be small: one for each thread.
+struct PacketMemory {
+  static constexpr std::size_t bytes = 80 << 10;
+  alignas(64) unsigned char data[bytes];
 };
 
 /// Where a cell is: rays are clipped to the box around all that the tile of the first level holds, then to the layers
@@ -229,9 +236,11 @@ struct BlockKernels {
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
   /// first_root() for each asked ray that comes into a cell whose alpha is constant, to the same bits. Null where the
   /// instruction set has no good vectors of sixteen.
-  void (*roots_in_cell)(const BlockView&, const CellPlace&, const PacketView&, unsigned asked, bool any, CellRoots&);
+  void (*roots_in_cell)(const BlockView&, const CellPlace&, const PacketView&, unsigned asked, bool any, PacketMemory&,
+                        CellRoots&);
   /// The same of rays that are known to come through the cell, from `enter` to `exit`. Null with the other one.
-  void (*roots_between)(const BlockView&, const CellPlace&, const PacketView&, unsigned asked, bool any, CellRoots&);
+  void (*roots_between)(const BlockView&, const CellPlace&, const PacketView&, unsigned asked, bool any, PacketMemory&,
+                        CellRoots&);
   PointField (*point_field)(const FieldLevel&, int degree, const float point[3]);
   /// Through the slots of a set, in coordinates of the cube of 4 x 4 x 4 slots, [-1, 1]^3.
   void (*walk)(std::uint64_t slots, const LocalRay&, float t0, float t1, Walk&);

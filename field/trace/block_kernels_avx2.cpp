@@ -1,4 +1,6 @@
 // The block kernels compiled for avx2 (see field/trace/CMakeLists.txt for its compiler options).
+#include <type_traits>
+
 #include "field/trace/block_kernels.h"
 
 namespace marrow::avx2 {

@@ -1,4 +1,6 @@
 // The block kernels compiled for sse4 (see field/trace/CMakeLists.txt for its compiler options).
+#include <type_traits>
+
 #include "field/trace/block_kernels.h"
 
 namespace marrow::sse4 {

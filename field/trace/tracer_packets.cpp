@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <memory>
 
 #include "field/trace/blend_tracer_state.h"
 #include "field/trace/cell_walk.h"
@@ -12,6 +13,16 @@ namespace marrow {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Of this thread, whose stack may be small.
+struct Memory {
+  std::array<CellWalk, RayPacket::size> walks;
+  PacketMemory search;
+};
+Memory& memory() {
+  thread_local const std::unique_ptr<Memory> own = std::make_unique_for_overwrite<Memory>();
+  return *own;
+}
 
 PacketView view_of(const RayPacket& packet) {
   return {{packet.origin[0], packet.origin[1], packet.origin[2]},
@@ -87,7 +98,7 @@ void BlendTracer::first_hits_in_cell(const TracePart& part, const Block& b, cons
                                      bool any, CellHits& out) const {
   CellRoots roots{};
   for_each_lane(rays, [&](std::size_t i) { roots.outside_from[i] = out.log[i].outside_from; });
-  state_->kernels.roots_in_cell(b.view(), place_of(part, b), view_of(packet), rays, any, roots);
+  state_->kernels.roots_in_cell(b.view(), place_of(part, b), view_of(packet), rays, any, memory().search, roots);
   for_each_lane(rays, [&](std::size_t i) {
     CellLog& log = out.log[i];
     out.hit[i] = {};
@@ -113,7 +124,7 @@ void BlendTracer::first_hits(std::size_t tile, const RayPacket& packet, unsigned
     return;
   }
   const Tile& made = state_->tree.tile(tile);
-  std::array<CellWalk, RayPacket::size> walks;
+  std::array<CellWalk, RayPacket::size>& walks = memory().walks;
   CellSteps steps;
   unsigned open = 0;
   const auto go_on = [&](std::size_t i) { open = walks[i].next(steps[i]) ? open | 1U << i : open & ~(1U << i); };
@@ -172,7 +183,7 @@ unsigned BlendTracer::hits_in(const CellSteps& steps, unsigned rays, const RayPa
   });
   CellPlace place;
   set_block(place, b);
-  state_->kernels.roots_between(b.view(), place, view_of(packet), together, any, roots);
+  state_->kernels.roots_between(b.view(), place, view_of(packet), together, any, memory().search, roots);
   for_each_lane(together, [&](std::size_t i) {
     if (roots.enters_inside >> i & 1) return alone(i);
     add_to(out.log[i], roots, i);

@@ -188,11 +188,12 @@ inline void leave_cell(const CellPlace& cell, const PacketView& rays, const Root
 }
 
 void roots_between(const BlockView& block, const CellPlace& cell, const PacketView& rays, unsigned asked, bool any_root,
-                   CellRoots& out) {
+                   PacketMemory& memory, CellRoots& out) {
   out.entered = asked;
   out.met = out.hit = out.begins_outside = out.enters_inside = 0;
   if (asked == 0) return;
-  const Packet packet = in_block(cell, rays, out);
+  Packet packet = in_block(cell, rays, out);
+  packet.ray.memory = &memory;
   const QueryOf<V16> query{
       packet.t0, packet.t1, any_root, false, mask_of(packet.from_surface), mask_of(packet.from_outside)};
   const RootOf<V16> root = first_root_of<false, V16>(block, packet.ray, query, mask_of(asked));
@@ -204,6 +205,6 @@ void roots_between(const BlockView& block, const CellPlace& cell, const PacketVi
 }
 
 void roots_in_cell(const BlockView& block, const CellPlace& cell, const PacketView& rays, unsigned asked, bool any_root,
-                   CellRoots& out) {
-  roots_between(block, cell, rays, asked & enter_cell(cell, rays, any_root, out), any_root, out);
+                   PacketMemory& memory, CellRoots& out) {
+  roots_between(block, cell, rays, asked & enter_cell(cell, rays, any_root, out), any_root, memory, out);
 }

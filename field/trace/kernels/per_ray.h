@@ -4,9 +4,10 @@
 // A lane of a packet goes through the operations of a single ray in the same order, so both give the same bits. What
 // one ray does behind an `if`, a packet does for all lanes when any of them needs it, and keeps where a mask is set.
 
-// Sixteen rays in the coordinates of a block.
+// Sixteen rays in the coordinates of a block, and memory for one search on them at a time.
 struct Ray16 {
   V16 origin[3], direction[3];
+  PacketMemory* memory;
 };
 
 template <class F>

@@ -18,8 +18,16 @@ struct Islands {
     F begin, end;
     Sample sample;
   };
-  Island stack[most];
+  static constexpr bool is_packet = sizeof(F) > sizeof(float);
+  std::conditional_t<is_packet, Island*, Island[most]> stack;
   IntOf<F> count{};
+
+  explicit Islands(const RayOf<F>& ray) {
+    if constexpr (is_packet) {
+      static_assert(sizeof(Island[most]) <= PacketMemory::bytes);
+      stack = reinterpret_cast<Island*>(ray.memory->data);
+    }
+  }
 
   Mask some() const { return count > 0; }
   void clear(Mask active) { count = select(active, IntOf<F>{}, count); }
@@ -69,7 +77,7 @@ struct Search {
   F nearest_island{};  // where it begins
 
   Search(Marcher<Varied, F>& m, F t0, F t1)
-      : march(m), front(t0), end(t1), exact(!(m.level.f_error > 0) && !(m.level.g_error > 0)) {}
+      : march(m), front(t0), end(t1), exact(!(m.level.f_error > 0) && !(m.level.g_error > 0)), islands(m.ray) {}
 
   Mask missed() const { return (front >= end) & !have_inside; }
   Mask bracketed() const { return have_inside & !islands.some(); }
