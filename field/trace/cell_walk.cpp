@@ -46,7 +46,7 @@ bool CellWalk::next(CellStep& step) {
     while (i + 1 < walk.count && holder(i + 1) == step.slot) ++i;
     step.exit = std::min(level.exit, level.cube.to_world(walk.end[i]));
     level.at = i + 1;
-    if (content.cells >> step.slot & 1) return true;
+    if (content.is_cell(step.slot)) return true;
     push(tree_->child(*level.tile, step.slot), step.enter, step.exit);
   }
   return false;

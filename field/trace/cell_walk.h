@@ -29,7 +29,7 @@ struct CellStep {
   bool is_cell_of(const CellStep& other) const { return tile == other.tile && slot == other.slot; }
 };
 
-using CellSteps = std::array<CellStep, 16>;
+using CellSteps = std::array<CellStep, lanes>;
 
 /// Smaller tiles are divided when the ray comes to them.
 class CellWalk {
@@ -42,8 +42,7 @@ class CellWalk {
   bool next(CellStep&);
 
  private:
-  // One of the tiles around a cell: two of at most 40 halvings.
-  static constexpr std::size_t most_tiles = 24;
+  // One of the tiles around a cell.
   struct Level {
     const Tile* tile;
     RayInCube cube;
@@ -58,7 +57,7 @@ class CellWalk {
   const BlockKernels* kernels_ = nullptr;
   Ray ray_;
   std::size_t depth_ = 0;
-  std::array<Level, most_tiles> levels_;
+  std::array<Level, CellPlace::most_tiles> levels_;
 };
 
 }  // namespace marrow

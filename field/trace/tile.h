@@ -38,6 +38,7 @@ struct TileContent {
 
   /// All slots that hold something.
   std::uint64_t occupied() const;
+  bool is_cell(int slot) const { return cells >> slot & 1; }
   /// The slots of the cell that goes by this one.
   std::uint64_t slots_of_cell(int slot) const;
 };

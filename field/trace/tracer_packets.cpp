@@ -71,8 +71,6 @@ CellPlace place_of(const TracePart& part, const Block& block) {
   return place;
 }
 
-bool is_cell(const Tile& tile, int slot) { return tile.content().cells >> slot & 1; }
-
 void add_to(CellLog& log, const CellRoots& roots, std::size_t lane) {
   log.evaluations += static_cast<std::uint32_t>(roots.evaluations[lane]);
   if (roots.begins_outside >> lane & 1) log.side = CellLog::Side::Outside;
@@ -86,7 +84,8 @@ bool BlendTracer::traces_packets() const { return state_->kernels.roots_in_cell 
 void BlendTracer::first_hits(const TracePart& part, const RayPacket& packet, unsigned rays, bool any,
                              CellHits& out) const {
   if (part.within == nullptr) return first_hits(part.tile, packet, rays, any, out);
-  if (traces_packets() && is_cell(*part.within, part.slot) && tiles_above(*part.within) < CellPlace::most_tiles) {
+  if (traces_packets() && part.within->content().is_cell(part.slot) &&
+      tiles_above(*part.within) < CellPlace::most_tiles) {
     const Block& b = block(*part.within, part.slot);
     if (!b.empty()) return first_hits_in_cell(part, b, packet, rays, any, out);
   }

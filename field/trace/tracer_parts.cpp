@@ -79,8 +79,6 @@ void pass_on_side(const Ray& ray, double enter, double exit, CellLog& log) {
     log.outside_from = std::min(log.outside_from, enter <= ray.t_min ? ray.t_min : exit);
 }
 
-bool is_cell(const TracePart& part) { return part.within->content().cells >> part.slot & 1; }
-
 }  // namespace
 
 std::optional<CellHit> BlendTracer::first_hit(const TracePart& part, const Ray& ray, bool any, CellLog& log) const {
@@ -88,8 +86,9 @@ std::optional<CellHit> BlendTracer::first_hit(const TracePart& part, const Ray& 
   const auto stretch = enter(part, ray, any, log);
   if (!stretch) return {};
   const auto hit =
-      is_cell(part) ? hit_in(*part.within, part.slot, ray, any, stretch->enter, stretch->exit, log)
-                    : hit_in(state_->tree.child(*part.within, part.slot), ray, any, stretch->enter, stretch->exit, log);
+      part.within->content().is_cell(part.slot)
+          ? hit_in(*part.within, part.slot, ray, any, stretch->enter, stretch->exit, log)
+          : hit_in(state_->tree.child(*part.within, part.slot), ray, any, stretch->enter, stretch->exit, log);
   if (log.side == CellLog::Side::Inside) return {};
   pass_on_side(ray, stretch->enter, stretch->exit, log);
   return hit && hit->t <= ray.t_max ? hit : std::nullopt;

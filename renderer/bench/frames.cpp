@@ -72,11 +72,11 @@ double shade(const RayEngine& engine, const Vec3d& toward_light, const BlockHits
   std::array<double, RayPacket::size> facing;
   BlockRays shadow_rays;
   std::size_t lit = 0;
-  for (unsigned left = hit; left != 0; left &= left - 1) {
-    const EngineHit& at = hits[static_cast<std::size_t>(std::countr_zero(left))];
+  for_each_lane(hit, [&](std::size_t lane) {
+    const EngineHit& at = hits[lane];
     facing[lit] = dot(at.normal, toward_light);
     if (facing[lit] > 0) shadow_rays[lit++] = {at.outside, UnitVec3::unchecked(toward_light)};
-  }
+  });
   counts.shadow_rays += lit;
   const unsigned hidden = engine.which_occluded(std::span(shadow_rays).first(lit));
   double light = ambient * std::popcount(hit);

@@ -1,4 +1,6 @@
 // The same bits from every instruction set, and whether levels of blocks are kept or not.
+#include "tests/trace/instruction_sets.h"
+
 #include <bit>
 #include <vector>
 
@@ -11,13 +13,6 @@
 
 namespace marrow::test {
 namespace {
-
-std::vector<std::string> sets_here() {
-  std::vector<std::string> names;
-  for (const char* name : {"sse4", "avx2", "avx512"})
-    if (block_kernels(name) != nullptr) names.emplace_back(name);
-  return names;
-}
 
 struct Variant {
   std::string name;

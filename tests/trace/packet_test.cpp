@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "field/trace/block_kernels.h"
 #include "tests/trace/first_of_tiles.h"
+#include "tests/trace/instruction_sets.h"
 #include "tests/trace/random_rays.h"
 
 namespace marrow::test {
@@ -102,13 +102,6 @@ void expect_same(const BlendTracer& tracer, const Rays& rays, unsigned asked, bo
     });
   }
   count.rays += std::popcount(asked);
-}
-
-std::vector<std::string> sets_here() {
-  std::vector<std::string> names;
-  for (const char* name : {"sse4", "avx2", "avx512"})
-    if (block_kernels(name) != nullptr) names.emplace_back(name);
-  return names;
 }
 
 class Packets : public testing::TestWithParam<Setting> {};
