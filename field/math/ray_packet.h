@@ -1,24 +1,28 @@
-// Up to sixteen rays side by side: what neighbouring pixels ask, and what one vector instruction answers.
+// Rays side by side, each number of theirs in an array: what vector instructions read.
 #pragma once
 
 #include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "field/math/ray.h"
 
 namespace marrow {
 
-struct RayPacket {
-  static constexpr int size = 16;
+/// Some lanes of a packet: a bit for each, the lowest that of lane 0.
+using LaneSet = std::uint64_t;
 
-  alignas(64) double origin[3][size] = {};
-  alignas(64) double direction[3][size] = {};  ///< unit vectors
-  alignas(64) double t_min[size] = {};
-  alignas(64) double t_max[size] = {};
+/// At most `size` rays; other lanes hold anything and are not to be asked for.
+struct RayPacket {
+  static constexpr int size = 64;
+
+  alignas(64) double origin[3][size];
+  alignas(64) double direction[3][size];  ///< unit vectors
+  alignas(64) double t_min[size];
+  alignas(64) double t_max[size];
 
   RayPacket() = default;
-  /// At most `size` rays; the other lanes stay 0 and are not to be asked for.
   explicit RayPacket(std::span<const Ray> rays) {
     for (std::size_t lane = 0; lane < rays.size(); ++lane) set(lane, rays[lane]);
   }
@@ -38,10 +42,14 @@ struct RayPacket {
   }
 };
 
-/// Calls body(lane) for each lane of a set, the lowest bit that of lane 0.
+/// The first `count` lanes.
+constexpr LaneSet first_lanes(std::size_t count) { return count == 0 ? 0 : ~LaneSet{0} >> (RayPacket::size - count); }
+constexpr LaneSet lane_bit(std::size_t lane) { return LaneSet{1} << lane; }
+
+/// Calls body(lane) for each lane of a set.
 template <class Body>
-void for_each_lane(unsigned rays, const Body& body) {
-  for (unsigned left = rays; left != 0; left &= left - 1) body(static_cast<std::size_t>(std::countr_zero(left)));
+void for_each_lane(LaneSet rays, const Body& body) {
+  for (LaneSet left = rays; left != 0; left &= left - 1) body(static_cast<std::size_t>(std::countr_zero(left)));
 }
 
 }  // namespace marrow

@@ -108,10 +108,12 @@ class BlendTracer {
   /// The first hit of first_hit() in a tile is the nearest one of its parts, to the same bits; except that a ray is not
   /// followed from part to part: when it turns out to begin inside, `log.side` says so, and its tiles have to be asked.
   std::optional<CellHit> first_hit(const TracePart&, const Ray&, bool any, CellLog&) const;
+  /// Whether rays are traced sooner together than one by one.
+  bool traces_packets() const;
   /// The same for the rays of a set, the lowest bit that of lane 0, to the same bits.
-  void first_hits(const TracePart&, const RayPacket&, unsigned rays, bool any, CellHits&) const;
+  void first_hits(const TracePart&, const RayPacket&, LaneSet rays, bool any, CellHits&) const;
   /// first_hit() in a tile, for the rays of a set.
-  void first_hits(std::size_t tile, const RayPacket&, unsigned rays, bool any, CellHits&) const;
+  void first_hits(std::size_t tile, const RayPacket&, LaneSet rays, bool any, CellHits&) const;
   /// Normal and starting point at a hit in this tile.
   SurfacePoint surface_at(std::size_t tile, const Vec3d& position) const;
   /// The same in the block of a hit.
@@ -129,10 +131,9 @@ class BlendTracer {
   std::optional<Stretch> stretch_in(const Tile&, const Ray&, bool any) const;
   std::optional<Stretch> stretch_in(const Tile&, int slot, const Ray&, bool any) const;
   std::optional<Stretch> enter(const TracePart&, const Ray&, bool any, CellLog&) const;
-  bool traces_packets() const;
-  unsigned hits_in(const std::array<CellStep, RayPacket::size>&, unsigned rays, const RayPacket&, bool any,
-                   CellHits&) const;
-  void first_hits_in_cell(const TracePart&, const Block&, const RayPacket&, unsigned rays, bool any, CellHits&) const;
+  LaneSet hits_in(const std::array<CellStep, RayPacket::size>&, LaneSet rays, const RayPacket&, bool any,
+                  CellHits&) const;
+  void first_hits_in_cell(const TracePart&, const Block&, const RayPacket&, LaneSet rays, bool any, CellHits&) const;
   void add_parts(std::size_t tile, const Tile& within, std::vector<TracePart>&) const;
   const Block& block(const Tile&, int slot) const;
   std::unique_ptr<State> state_;

@@ -86,7 +86,9 @@ struct Root {
   bool enters_inside = false;   ///< a hit, but the field is clearly above 1 where surface can first be in the block
 };
 
-/// Sixteen rays side by side in double, 64-byte aligned: the arrays of a RayPacket.
+inline constexpr int packet_size = 64;  ///< rays of a packet
+
+/// Rays side by side in double, 64-byte aligned: the arrays of a RayPacket.
 struct PacketView {
   const double *origin[3], *direction[3], *t_min, *t_max;
 };
@@ -99,8 +101,9 @@ struct TileLayers {
 
 /// What the search of a packet needs beside the stack, which may be small: one for each thread.
 struct PacketMemory {
-  static constexpr std::size_t bytes = 80 << 10;
-  alignas(64) unsigned char data[bytes];
+  static constexpr std::size_t of_search = 80 << 10, of_rays = 12 << 10;
+  alignas(64) unsigned char search[of_search];
+  alignas(64) unsigned char rays[of_rays];
 };
 
 /// Where a cell is: rays are clipped to the box around all that the tile of the first level holds, then to the layers
@@ -115,14 +118,14 @@ struct CellPlace {
 
 /// Of each ray of a packet in a cell; in the sets of rays the lowest bit is that of lane 0.
 struct CellRoots {
-  alignas(64) double outside_from[lanes];  ///< as in CellLog; in and out
-  alignas(64) double enter[lanes];         ///< where it comes into the cell, and leaves it
-  alignas(64) double exit[lanes];
-  alignas(64) double t[lanes];          ///< of a hit
-  alignas(64) double undecided[lanes];  ///< as in Root
-  alignas(64) int evaluations[lanes];
-  unsigned entered, begins_outside, enters_inside;
-  unsigned met, hit;  ///< met the surface; and not behind their ends
+  alignas(64) double outside_from[packet_size];  ///< as in CellLog; in and out
+  alignas(64) double enter[packet_size];         ///< where it comes into the cell, and leaves it
+  alignas(64) double exit[packet_size];
+  alignas(64) double t[packet_size];          ///< of a hit
+  alignas(64) double undecided[packet_size];  ///< as in Root
+  alignas(64) int evaluations[packet_size];
+  std::uint64_t entered, begins_outside, enters_inside;
+  std::uint64_t met, hit;  ///< met the surface; and not behind their ends
 };
 
 /// Gaps along a ray shorter than this times the distance to the nearest source are not decided.
@@ -236,11 +239,11 @@ struct BlockKernels {
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
   /// first_root() for each asked ray that comes into a cell whose alpha is constant, to the same bits. Null where the
   /// instruction set has no good vectors of sixteen.
-  void (*roots_in_cell)(const BlockView&, const CellPlace&, const PacketView&, unsigned asked, bool any, PacketMemory&,
-                        CellRoots&);
+  void (*roots_in_cell)(const BlockView&, const CellPlace&, const PacketView&, std::uint64_t asked, bool any,
+                        PacketMemory&, CellRoots&);
   /// The same of rays that are known to come through the cell, from `enter` to `exit`. Null with the other one.
-  void (*roots_between)(const BlockView&, const CellPlace&, const PacketView&, unsigned asked, bool any, PacketMemory&,
-                        CellRoots&);
+  void (*roots_between)(const BlockView&, const CellPlace&, const PacketView&, std::uint64_t asked, bool any,
+                        PacketMemory&, CellRoots&);
   PointField (*point_field)(const FieldLevel&, int degree, const float point[3]);
   /// Through the slots of a set, in coordinates of the cube of 4 x 4 x 4 slots, [-1, 1]^3.
   void (*walk)(std::uint64_t slots, const LocalRay&, float t0, float t1, Walk&);

@@ -29,7 +29,7 @@ struct CellStep {
   bool is_cell_of(const CellStep& other) const { return tile == other.tile && slot == other.slot; }
 };
 
-using CellSteps = std::array<CellStep, lanes>;
+using CellSteps = std::array<CellStep, packet_size>;
 
 /// Smaller tiles are divided when the ray comes to them.
 class CellWalk {

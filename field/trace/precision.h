@@ -24,10 +24,13 @@ inline ErrorBudget budget_of(double tolerance, int degree) {
   return {.field = share, .gradient = share * degree};
 }
 
-/// Of the polynomials of the fine level. Of degree 6 they cost 2.4 times as much, and lists are a third shorter where
-/// cells are large: figures in the README.
+/// Below it lists are so short that polynomials are most of the work.
+inline constexpr std::size_t few_pieces = 500;
+
+/// Of the polynomials of the fine level. Of degree 6 they cost 2.4 times as much, and lists are a third shorter:
+/// figures in the README.
 inline int fine_far_degree_for(std::size_t piece_count) {
-  return piece_count < many_pieces ? low_far_degree : high_far_degree;
+  return piece_count < few_pieces ? low_far_degree : high_far_degree;
 }
 
 /// Small cells have short lists, so rays are faster, but there are more of them to build. Processor time of a frame of

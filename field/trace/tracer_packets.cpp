@@ -81,7 +81,7 @@ void add_to(CellLog& log, const CellRoots& roots, std::size_t lane) {
 
 bool BlendTracer::traces_packets() const { return state_->kernels.roots_in_cell != nullptr && !state_->range; }
 
-void BlendTracer::first_hits(const TracePart& part, const RayPacket& packet, unsigned rays, bool any,
+void BlendTracer::first_hits(const TracePart& part, const RayPacket& packet, LaneSet rays, bool any,
                              CellHits& out) const {
   if (part.within == nullptr) return first_hits(part.tile, packet, rays, any, out);
   if (traces_packets() && part.within->content().is_cell(part.slot) &&
@@ -93,9 +93,9 @@ void BlendTracer::first_hits(const TracePart& part, const RayPacket& packet, uns
       rays, [&](std::size_t i) { out.hit[i] = first_hit(part, packet.ray(i), any, out.log[i]).value_or(CellHit{}); });
 }
 
-void BlendTracer::first_hits_in_cell(const TracePart& part, const Block& b, const RayPacket& packet, unsigned rays,
+void BlendTracer::first_hits_in_cell(const TracePart& part, const Block& b, const RayPacket& packet, LaneSet rays,
                                      bool any, CellHits& out) const {
-  CellRoots roots{};
+  CellRoots roots;
   for_each_lane(rays, [&](std::size_t i) { roots.outside_from[i] = out.log[i].outside_from; });
   state_->kernels.roots_in_cell(b.view(), place_of(part, b), view_of(packet), rays, any, memory().search, roots);
   for_each_lane(rays, [&](std::size_t i) {
@@ -116,7 +116,7 @@ void BlendTracer::first_hits_in_cell(const TracePart& part, const Block& b, cons
 
 // Each ray goes from cell to cell as it would alone. Those that wait at the cell that any of them comes to first are
 // traced together.
-void BlendTracer::first_hits(std::size_t tile, const RayPacket& packet, unsigned rays, bool any, CellHits& out) const {
+void BlendTracer::first_hits(std::size_t tile, const RayPacket& packet, LaneSet rays, bool any, CellHits& out) const {
   if (!traces_packets()) {
     for_each_lane(
         rays, [&](std::size_t i) { out.hit[i] = first_hit(tile, packet.ray(i), any, out.log[i]).value_or(CellHit{}); });
@@ -125,8 +125,8 @@ void BlendTracer::first_hits(std::size_t tile, const RayPacket& packet, unsigned
   const Tile& made = state_->tree.tile(tile);
   std::array<CellWalk, RayPacket::size>& walks = memory().walks;
   CellSteps steps;
-  unsigned open = 0;
-  const auto go_on = [&](std::size_t i) { open = walks[i].next(steps[i]) ? open | 1U << i : open & ~(1U << i); };
+  LaneSet open = 0;
+  const auto go_on = [&](std::size_t i) { open = walks[i].next(steps[i]) ? open | lane_bit(i) : open & ~lane_bit(i); };
   for_each_lane(rays, [&](std::size_t i) {
     const Ray ray = packet.ray(i);
     out.hit[i] = {};
@@ -145,51 +145,59 @@ void BlendTracer::first_hits(std::size_t tile, const RayPacket& packet, unsigned
       nearest = steps[i].enter;
       first = i;
     });
-    unsigned together = 0;
+    LaneSet together = 0;
     for_each_lane(open,
-                  [&](std::size_t i) { together |= static_cast<unsigned>(steps[i].is_cell_of(steps[first])) << i; });
-    const unsigned hit = hits_in(steps, together, packet, any, out);
+                  [&](std::size_t i) { together |= static_cast<LaneSet>(steps[i].is_cell_of(steps[first])) << i; });
+    const LaneSet hit = hits_in(steps, together, packet, any, out);
     open &= ~hit;
     for_each_lane(together & ~hit, go_on);
   }
 }
 
 // Returns which rays meet the surface in the cell.
-unsigned BlendTracer::hits_in(const CellSteps& steps, unsigned rays, const RayPacket& packet, bool any,
-                              CellHits& out) const {
+LaneSet BlendTracer::hits_in(const CellSteps& steps, LaneSet rays, const RayPacket& packet, bool any,
+                             CellHits& out) const {
   const CellStep& cell = steps[static_cast<std::size_t>(std::countr_zero(rays))];
   const Block& b = block(*cell.tile, cell.slot);
   if (b.empty()) {
     cell.tile->note_empty(cell.slot);
     return 0;
   }
-  unsigned hit = 0;
+  LaneSet hit = 0;
   const auto alone = [&](std::size_t i) {
     const CellStep& step = steps[i];
     const auto found = hit_in(*step.tile, step.slot, packet.ray(i), any, step.enter, step.exit, out.log[i]);
     if (!found) return;
-    hit |= 1U << i;
+    hit |= lane_bit(i);
     if (found->t <= packet.t_max[i]) out.hit[i] = *found;
   };
-  CellRoots roots{};
-  unsigned together = 0;
+  // Those that go together, in the first lanes of a packet of their own.
+  RayPacket close;
+  CellRoots roots;
+  std::array<std::size_t, RayPacket::size> lane_of;
+  std::size_t count = 0;
   for_each_lane(rays, [&](std::size_t i) {
     if (out.log[i].side == CellLog::Side::Inside || std::has_single_bit(rays)) return alone(i);
-    together |= 1U << i;
-    roots.enter[i] = steps[i].enter;
-    roots.exit[i] = steps[i].exit;
-    roots.outside_from[i] = out.log[i].side == CellLog::Side::Outside ? -infinity : infinity;
+    close.set(count, packet.ray(i));
+    roots.enter[count] = steps[i].enter;
+    roots.exit[count] = steps[i].exit;
+    roots.outside_from[count] = out.log[i].side == CellLog::Side::Outside ? -infinity : infinity;
+    lane_of[count++] = i;
   });
   CellPlace place;
   set_block(place, b);
-  state_->kernels.roots_between(b.view(), place, view_of(packet), together, any, memory().search, roots);
-  for_each_lane(together, [&](std::size_t i) {
-    if (roots.enters_inside >> i & 1) return alone(i);
-    add_to(out.log[i], roots, i);
-    if (!(roots.met >> i & 1)) return;
-    hit |= 1U << i;
-    if (roots.hit >> i & 1) out.hit[i] = {roots.t[i], &b};
-  });
+  state_->kernels.roots_between(b.view(), place, view_of(close), first_lanes(count), any, memory().search, roots);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = lane_of[k];
+    if (roots.enters_inside >> k & 1) {
+      alone(i);
+      continue;
+    }
+    add_to(out.log[i], roots, k);
+    if (!(roots.met >> k & 1)) continue;
+    hit |= lane_bit(i);
+    if (roots.hit >> k & 1) out.hit[i] = {roots.t[k], &b};
+  }
   return hit;
 }
 

@@ -34,7 +34,7 @@ struct RenderCommand {
   int threads = 0;         ///< 0: all that the process may use
   std::string isa;         ///< empty: the best of this machine
   std::string embree_isa;  ///< empty: as `isa`
-  int tile_size = 16;
+  int tile_size = 32;
   bool eager = false;  ///< cells are made ready before the first ray
   std::string view;
   std::optional<std::filesystem::path> ocio;

@@ -2,12 +2,11 @@
 #include "renderer/bench/frames.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <mutex>
 #include <numbers>
-#include <span>
+#include <optional>
+#include <vector>
 
 #include <tbb/blocked_range.h>
 #include <tbb/blocked_range2d.h>
@@ -16,7 +15,6 @@
 #include <tbb/task_arena.h>
 
 #include "field/math/elementary.h"
-#include "field/math/ray_packet.h"
 
 namespace marrow {
 namespace {
@@ -42,60 +40,73 @@ RayCounts counted(const FrameSettings& settings, const Range& range, const Body&
   const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(settings.threads));
   tbb::task_arena(settings.threads).execute([&] {
-    tbb::parallel_for(range, [&](const Range& part) {
+    const auto work = [&](const Range& part) {
       RayCounts counts;
       body(part, counts);
       const std::lock_guard lock(mutex);
       all += counts;
-    });
+    };
+    tbb::parallel_for(range, work, tbb::simple_partitioner{});
   });
   return all;
 }
 
 using Pixels = tbb::blocked_range2d<int>;
 
-// As many as rays in a packet, which are asked together; engines without packets take them one by one.
-constexpr int block_side = 4;
+// Four by four, so that each sixteen are neighbours.
+template <class Visit>
+void for_each_pixel(const Pixels& pixels, const Visit& visit) {
+  constexpr int side = 4;
+  const int right = pixels.cols().end(), bottom = pixels.rows().end();
+  for (int y0 = pixels.rows().begin(); y0 < bottom; y0 += side)
+    for (int x0 = pixels.cols().begin(); x0 < right; x0 += side)
+      for (int y = y0; y < std::min(y0 + side, bottom); ++y)
+        for (int x = x0; x < std::min(x0 + side, right); ++x) visit(x, y);
+}
 
-struct Block {
-  int x0, y0, x1, y1;
+// The side of a block of pixels whose rays are asked together; engines that cannot do so take them one by one.
+constexpr int block_side = 32;
+
+// Kept from block to block, so that no engine is charged for memory of the loop.
+struct BlockRays {
+  std::vector<Ray> rays, shadow_rays;
+  std::vector<std::optional<EngineHit>> hits;
+  std::vector<double> facing;  // cosines at the lit hits
+  std::vector<std::uint8_t> hidden;
 };
 
-// Of fixed size, so that no engine is charged for memory of the loop.
-using BlockRays = std::array<Ray, RayPacket::size>;
-using BlockHits = std::array<EngineHit, RayPacket::size>;
-
-// Light of the hits whose bits are set.
-double shade(const RayEngine& engine, const Vec3d& toward_light, const BlockHits& hits, unsigned hit,
-             RayCounts& counts) {
+// Light of the hits.
+double shade(const RayEngine& engine, const Vec3d& toward_light, BlockRays& block, RayCounts& counts) {
   constexpr double ambient = 0.1, albedo = 0.8;
-  std::array<double, RayPacket::size> facing;
-  BlockRays shadow_rays;
-  std::size_t lit = 0;
-  for_each_lane(hit, [&](std::size_t lane) {
-    const EngineHit& at = hits[lane];
-    facing[lit] = dot(at.normal, toward_light);
-    if (facing[lit] > 0) shadow_rays[lit++] = {at.outside, UnitVec3::unchecked(toward_light)};
-  });
-  counts.shadow_rays += lit;
-  const unsigned hidden = engine.which_occluded(std::span(shadow_rays).first(lit));
-  double light = ambient * std::popcount(hit);
-  for (std::size_t i = 0; i < lit; ++i)
-    if (!(hidden >> i & 1)) light += albedo * facing[i];
+  block.shadow_rays.clear();
+  block.facing.clear();
+  double light = 0;
+  for (const auto& hit : block.hits) {
+    if (!hit) continue;
+    ++counts.hits;
+    light += ambient;
+    const double facing = dot(hit->normal, toward_light);
+    if (!(facing > 0)) continue;
+    block.facing.push_back(facing);
+    block.shadow_rays.push_back({hit->outside, UnitVec3::unchecked(toward_light)});
+  }
+  block.hidden.resize(block.shadow_rays.size());
+  counts.shadow_rays += block.shadow_rays.size();
+  engine.occluded(block.shadow_rays, block.hidden);
+  for (std::size_t i = 0; i < block.hidden.size(); ++i)
+    if (block.hidden[i] == 0) light += albedo * block.facing[i];
   return light;
 }
 
-void shade_block(const RayEngine& engine, const Camera& camera, const Vec3d& toward_light, const Block& block,
+void shade_block(const RayEngine& engine, const Camera& camera, const Vec3d& toward_light, const Pixels& pixels,
                  RayCounts& counts) {
-  BlockRays rays;
-  BlockHits hits;
-  std::size_t count = 0;
-  for (int y = block.y0; y < block.y1; ++y)
-    for (int x = block.x0; x < block.x1; ++x) rays[count++] = camera.ray(x, y);
-  const unsigned hit = engine.first_hits(std::span(rays).first(count), hits, counts);
-  counts.rays += count;
-  counts.hits += static_cast<std::uint64_t>(std::popcount(hit));
-  counts.light += shade(engine, toward_light, hits, hit, counts);
+  thread_local BlockRays block;
+  block.rays.clear();
+  for_each_pixel(pixels, [&](int x, int y) { block.rays.push_back(camera.ray(x, y)); });
+  block.hits.resize(block.rays.size());
+  engine.first_hits(block.rays, block.hits, counts);
+  counts.rays += block.rays.size();
+  counts.light += shade(engine, toward_light, block, counts);
 }
 
 // A bijection of 64 bits whose outputs look random: the finaliser of splitmix64.
@@ -117,38 +128,58 @@ UnitVec3 diffuse_direction(const Vec3d& normal, std::uint64_t seed) {
 
 RayCounts shaded_frame(const RayEngine& engine, const Workload& workload, const FrameSettings& settings) {
   const Camera camera(workload, settings.size);
-  return counted(settings, Pixels(0, settings.size, 16, 0, settings.size, 16), [&](const Pixels& part, RayCounts& c) {
-    const int right = part.cols().end(), bottom = part.rows().end();
-    for (int y = part.rows().begin(); y < bottom; y += block_side)
-      for (int x = part.cols().begin(); x < right; x += block_side)
-        shade_block(engine, camera, workload.toward_light,
-                    {x, y, std::min(x + block_side, right), std::min(y + block_side, bottom)}, c);
-  });
+  return counted(
+      settings, Pixels(0, settings.size, block_side, 0, settings.size, block_side),
+      [&](const Pixels& part, RayCounts& c) { shade_block(engine, camera, workload.toward_light, part, c); });
 }
 
 std::vector<EngineHit> hits_of_frame(const RayEngine& engine, const Workload& workload, const FrameSettings& settings) {
   const Camera camera(workload, settings.size);
   std::vector<EngineHit> hits;
   RayCounts unused;
-  for (int y = 0; y < settings.size; ++y)
-    for (int x = 0; x < settings.size; ++x)
-      if (EngineHit hit; engine.first_hit(camera.ray(x, y), hit, unused)) hits.push_back(hit);
+  for (int y = 0; y < settings.size; y += block_side)
+    for (int x = 0; x < settings.size; x += block_side)
+      for_each_pixel(Pixels(y, std::min(y + block_side, settings.size), x, std::min(x + block_side, settings.size)),
+                     [&](int px, int py) {
+                       if (EngineHit hit; engine.first_hit(camera.ray(px, py), hit, unused)) hits.push_back(hit);
+                     });
   return hits;
 }
+
+namespace {
+
+// A path that has come to a hit.
+struct PathEnd {
+  std::size_t path;
+  EngineHit hit;
+};
+
+void go_on(const RayEngine& engine, std::vector<PathEnd>& ends, int bounce, RayCounts& counts) {
+  std::vector<Ray> rays;
+  for (const auto& [path, hit] : ends) {
+    const auto seed = static_cast<std::uint64_t>(path) * 16 + static_cast<std::uint64_t>(bounce);
+    rays.push_back({hit.outside, diffuse_direction(hit.normal, seed)});
+  }
+  std::vector<std::optional<EngineHit>> hits(rays.size());
+  engine.first_hits(rays, hits, counts);
+  counts.rays += rays.size();
+  std::vector<PathEnd> left;
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    if (hits[i]) left.push_back({ends[i].path, *hits[i]});
+  counts.hits += left.size();
+  ends = std::move(left);
+}
+
+}  // namespace
 
 RayCounts diffuse_paths(const RayEngine& engine, const std::vector<EngineHit>& from, int bounces,
                         const FrameSettings& settings) {
   using Hits = tbb::blocked_range<std::size_t>;
-  return counted(settings, Hits(0, from.size(), 256), [&](const Hits& part, RayCounts& c) {
-    for (std::size_t i = part.begin(); i < part.end(); ++i) {
-      EngineHit hit = from[i];
-      for (int bounce = 0; bounce < bounces; ++bounce) {
-        const auto seed = static_cast<std::uint64_t>(i) * 16 + static_cast<std::uint64_t>(bounce);
-        ++c.rays;
-        if (!engine.first_hit({hit.outside, diffuse_direction(hit.normal, seed)}, hit, c)) break;
-        ++c.hits;
-      }
-    }
+  constexpr std::size_t together = block_side * block_side;
+  return counted(settings, Hits(0, from.size(), together), [&](const Hits& part, RayCounts& c) {
+    std::vector<PathEnd> ends;
+    for (std::size_t i = part.begin(); i < part.end(); ++i) ends.push_back({i, from[i]});
+    for (int bounce = 0; bounce < bounces && !ends.empty(); ++bounce) go_on(engine, ends, bounce, c);
   });
 }
 

@@ -12,11 +12,11 @@ struct FrameSettings {
   int threads = 2;
 };
 
-/// One ray through the middle of each pixel, and one shadow ray from each hit that faces the sun; those of 4 x 4 pixels
-/// are asked together.
+/// One ray through the middle of each pixel, and one shadow ray from each hit that faces the sun; those of a block of
+/// pixels are asked together.
 RayCounts shaded_frame(const RayEngine&, const Workload&, const FrameSettings&);
 
-/// The hits of the rays through the pixels' middles, in the order of the pixels.
+/// The hits of the rays through the pixels' middles, block by block.
 std::vector<EngineHit> hits_of_frame(const RayEngine&, const Workload&, const FrameSettings&);
 
 /// From each of the hits a path of at most `bounces` rays, each with the density of a diffuse surface; a path ends when

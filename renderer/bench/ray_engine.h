@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,24 +38,23 @@ class RayEngine {
   virtual ~RayEngine() = default;
   virtual bool first_hit(const Ray&, EngineHit&, RayCounts&) const = 0;
   virtual bool occluded(const Ray&) const = 0;
-  /// Neighbouring rays together, at most RayPacket::size: bit i of the answer says whether rays[i] has a hit, hits[i].
-  virtual unsigned first_hits(std::span<const Ray> rays, std::span<EngineHit> hits, RayCounts& counts) const {
-    unsigned found = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      found |= static_cast<unsigned>(first_hit(rays[i], hits[i], counts)) << i;
-    return found;
+  /// Many rays through one region: a hit for each, or nothing.
+  virtual void first_hits(std::span<const Ray> rays, std::span<std::optional<EngineHit>> hits,
+                          RayCounts& counts) const {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      EngineHit hit;
+      hits[i] = first_hit(rays[i], hit, counts) ? std::optional(hit) : std::nullopt;
+    }
   }
-  /// Bit i is of rays[i].
-  virtual unsigned which_occluded(std::span<const Ray> rays) const {
-    unsigned hidden = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) hidden |= static_cast<unsigned>(occluded(rays[i])) << i;
-    return hidden;
+  /// As Surfaces::occluded().
+  virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> hidden) const {
+    for (std::size_t i = 0; i < rays.size(); ++i) hidden[i] = occluded(rays[i]) ? 1 : 0;
   }
   /// As Surfaces::refine().
   virtual void refine() const {}
 };
 
-/// The surfaces of this project, which take neighbouring rays together; they must outlive the engine.
+/// The surfaces of this project, which take many rays together; they must outlive the engine.
 std::unique_ptr<RayEngine> engine_of(const Surfaces&);
 /// The same ray by ray, and slower: it counts evaluations and what is not certified.
 std::unique_ptr<RayEngine> recording_engine_of(const Surfaces&);

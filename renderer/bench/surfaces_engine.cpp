@@ -1,5 +1,4 @@
 // The surfaces of this project as an engine to be measured.
-#include "field/math/ray_packet.h"
 #include "renderer/bench/ray_engine.h"
 
 namespace marrow {
@@ -17,18 +16,15 @@ class SurfacesEngine final : public RayEngine {
     return found.has_value();
   }
   bool occluded(const Ray& ray) const override { return surfaces_.occluded(ray); }
-  unsigned first_hits(std::span<const Ray> rays, std::span<EngineHit> hits, RayCounts&) const override {
-    std::array<std::optional<SurfaceHit>, RayPacket::size> found;
+  void first_hits(std::span<const Ray> rays, std::span<std::optional<EngineHit>> hits, RayCounts&) const override {
+    std::vector<std::optional<SurfaceHit>> found(rays.size());
     surfaces_.first_hits(rays, found);
-    unsigned bits = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (!found[i]) continue;
-      hits[i] = engine_hit(*found[i]);
-      bits |= 1U << i;
-    }
-    return bits;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      hits[i] = found[i] ? std::optional(engine_hit(*found[i])) : std::nullopt;
   }
-  unsigned which_occluded(std::span<const Ray> rays) const override { return surfaces_.which_occluded(rays); }
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> hidden) const override {
+    surfaces_.occluded(rays, hidden);
+  }
   void refine() const override { surfaces_.refine(); }
 
  private:

@@ -8,6 +8,7 @@
 #include <embree3/rtcore.h>
 
 #include "renderer/geometry/mesh_solid.h"
+#include "renderer/geometry/ray_stream.h"
 
 namespace marrow {
 namespace {
@@ -26,8 +27,6 @@ double area_of(const Box3& box) {
   const Vec3d s = box.size();
   return s.x * s.y + s.y * s.z + s.z * s.x;
 }
-
-unsigned lanes_of(std::span<const Ray> rays) { return (1U << rays.size()) - 1; }
 
 Ray until(const Ray& ray, double t) {
   Ray shorter = ray;
@@ -138,43 +137,42 @@ bool EmbreeSurfaces::occluded(const Ray& ray) const {
   return nearest_plane(ray).plane != nullptr || finest().occluded(ray);
 }
 
-EmbreeSurfaces::BeforePlanes EmbreeSurfaces::before_planes(std::span<const Ray> rays) const {
-  BeforePlanes before{.planes = {}, .packet = RayPacket(rays)};
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    before.planes[i] = nearest_plane(rays[i]);
-    before.packet.t_max[i] = std::min(rays[i].t_max, before.planes[i].t);
+EmbreeSurfaces::BeforePlanes::BeforePlanes(const EmbreeSurfaces& surfaces, std::span<const Ray> all) : rays(all) {
+  if (surfaces.planes_.empty()) return;
+  for (const Ray& ray : all) {
+    planes_.push_back(surfaces.nearest_plane(ray));
+    shorter_.push_back(until(ray, planes_.back().t));
   }
-  return before;
+  rays = shorter_;
 }
 
 void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits) const {
-  const auto [planes, packet] = before_planes(rays);
-  PartHierarchy::Hits found;
-  finest().first_hits(packet, lanes_of(rays), found);
+  const BeforePlanes before(*this, rays);
+  std::vector<PartHierarchy::Hit> found(rays.size());
+  stream_first_hits(finest(), before.rays, found, {});
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (found[i].begins_inside) found[i] = whole_->first_hit(packet.ray(i), nullptr);
-    hits[i] = hit_of(found[i], planes[i], rays[i]);
+    if (found[i].begins_inside) found[i] = whole_->first_hit(before.rays[i], nullptr);
+    hits[i] = hit_of(found[i], before.plane(i), rays[i]);
   }
 }
 
 void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits,
                                 std::span<RayRecord> records) const {
-  thread_local PartHierarchy::Logs visits;
-  for (auto& of_ray : visits) of_ray.clear();
-  const auto [planes, packet] = before_planes(rays);
-  PartHierarchy::Hits found;
-  whole_->first_hits(packet, lanes_of(rays), found, &visits);
+  const BeforePlanes before(*this, rays);
+  std::vector<std::vector<ElementLog>> visits(rays.size());
+  std::vector<PartHierarchy::Hit> found(rays.size());
+  stream_first_hits(*whole_, before.rays, found, visits);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    records[i] = record_of(visits[i], found[i].undecided, std::min(found[i].t, planes[i].t));
-    hits[i] = hit_of(found[i], planes[i], rays[i]);
+    records[i] = record_of(visits[i], found[i].undecided, std::min(found[i].t, before.plane(i).t));
+    hits[i] = hit_of(found[i], before.plane(i), rays[i]);
   }
 }
 
-unsigned EmbreeSurfaces::which_occluded(std::span<const Ray> rays) const {
-  unsigned by_planes = 0;
+void EmbreeSurfaces::occluded(std::span<const Ray> rays, std::span<std::uint8_t> hidden) const {
+  stream_occluded(finest(), rays, hidden);
+  if (planes_.empty()) return;
   for (std::size_t i = 0; i < rays.size(); ++i)
-    by_planes |= static_cast<unsigned>(nearest_plane(rays[i]).plane != nullptr) << i;
-  return by_planes | finest().occluded(RayPacket(rays), lanes_of(rays) & ~by_planes);
+    if (nearest_plane(rays[i]).plane != nullptr) hidden[i] = 1;
 }
 
 }  // namespace marrow

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "field/base/result.h"
-#include "field/math/ray_packet.h"
 #include "renderer/geometry/embree_handles.h"
 #include "renderer/geometry/part_hierarchy.h"
 #include "renderer/geometry/solid.h"
@@ -41,7 +40,7 @@ class EmbreeSurfaces final : public Surfaces {
   bool occluded(const Ray&) const override;
   void first_hits(std::span<const Ray>, std::span<std::optional<SurfaceHit>>) const override;
   void first_hits(std::span<const Ray>, std::span<std::optional<SurfaceHit>>, std::span<RayRecord>) const override;
-  unsigned which_occluded(std::span<const Ray>) const override;
+  void occluded(std::span<const Ray>, std::span<std::uint8_t> hidden) const override;
   Box3 bounds() const override { return extent_; }
   void refine() const override;
 
@@ -64,11 +63,19 @@ class EmbreeSurfaces final : public Surfaces {
     double t = std::numeric_limits<double>::infinity();
   };
   PlaneHit nearest_plane(const Ray&) const;
-  struct BeforePlanes {
-    std::array<PlaneHit, RayPacket::size> planes;
-    RayPacket packet;  // the rays up to their planes
+  // Rays up to their planes.
+  class BeforePlanes {
+   public:
+    BeforePlanes(const EmbreeSurfaces&, std::span<const Ray>);
+    BeforePlanes(const BeforePlanes&) = delete;
+    BeforePlanes& operator=(const BeforePlanes&) = delete;
+    PlaneHit plane(std::size_t ray) const { return planes_.empty() ? PlaneHit{} : planes_[ray]; }
+    std::span<const Ray> rays;
+
+   private:
+    std::vector<PlaneHit> planes_;  // none where there are no planes
+    std::vector<Ray> shorter_;
   };
-  BeforePlanes before_planes(std::span<const Ray>) const;
   const PartHierarchy& finest() const { return *finest_.load(std::memory_order_acquire); }
   std::optional<SurfaceHit> hit_of(const PartHierarchy::Hit&, const PlaneHit&, const Ray&) const;
 

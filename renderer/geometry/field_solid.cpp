@@ -88,7 +88,7 @@ std::optional<double> FieldSolid::hit_in_part(const SolidPart& part, const Ray& 
   return traced(TracePart{part.element, static_cast<const Tile*>(part.within), part.slot}, ray, any, log);
 }
 
-void FieldSolid::hits_in_part(const SolidPart& part, const RayPacket& packet, unsigned lanes, bool any,
+void FieldSolid::hits_in_part(const SolidPart& part, const RayPacket& packet, LaneSet lanes, bool any,
                               PacketLog& log) const {
   std::array<double, RayPacket::size> stretch;
   stretch.fill(1);

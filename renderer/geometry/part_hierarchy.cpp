@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -15,24 +14,18 @@ void EmbreeRelease::operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene)
 
 namespace {
 
-// Below so many rays a packet costs more than it shares.
-constexpr int worth_a_packet = 3;
-
-// Rides with the rays through Embree; a single ray is in lane 0 of no packet. Embree names a ray by its lane.
+// Rides with rays through Embree. A single ray asks each part that it comes to; rays of a stream only note it.
 struct Query : RTCIntersectContext {
-  Query(PartVisit* of_lanes, const RayPacket* of_rays) : visits(of_lanes), packet(of_rays) {
-    rtcInitIntersectContext(this);
-    // Boxes are met in the order of the whole packet, which suits neighbours: rays are asked of 5 % more parts than
-    // alone instead of 20 %. What a frustum of rays misses each of them misses, up to the same rounding.
-    if (packet != nullptr) flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  }
-  PartVisit* visits;
-  const RayPacket* packet;
+  explicit Query(PartVisit& of_single) : single(&of_single) { rtcInitIntersectContext(this); }
+  explicit Query(std::span<StreamedRay* const> of_stream) : stream(of_stream) { rtcInitIntersectContext(this); }
+  PartVisit* single = nullptr;
+  std::span<StreamedRay* const> stream;  // Embree names a ray by its place here
 };
 
-// Embree's t of a hit, never before the hit itself: a box that holds a nearer one must not be skipped.
+// Embree's t of a place on the ray, behind the place itself, also where that is the ray's beginning: a box that holds a
+// nearer hit, or is entered at the same place, must not be skipped.
 float embree_t(const PartVisit& v, double t) {
-  return std::nextafter(static_cast<float>((t - v.t_start) * (1 + 1e-6)), std::numeric_limits<float>::infinity());
+  return static_cast<float>((t - v.t_start) * (1 + 1e-6)) + std::numeric_limits<float>::min();
 }
 
 const PartsOfSolid& parts_of(void* user_data) { return *static_cast<const PartsOfSolid*>(user_data); }
@@ -49,89 +42,49 @@ void bounds_callback(const RTCBoundsFunctionArguments* a) {
 
 constexpr float done = -std::numeric_limits<float>::infinity();  // nothing more is asked of a ray
 
-// Embree has met the box of a leaf and asks for all parts in it: which rays come into this one, and where each of them
-// is in Embree's arrays, which may be those of the packet or of a single ray of it.
-struct Asked {
-  unsigned lanes = 0;
-  std::array<unsigned, RayPacket::size> at;
-};
+double t_or_infinity(const std::optional<double>& t) { return t.value_or(std::numeric_limits<double>::infinity()); }
 
-Asked asked_of(const Query& q, const SolidPart& part, const int* valid, RTCRayN* rays, unsigned count) {
-  Asked asked;
-  for (unsigned i = 0; i < count; ++i) {
-    if (valid[i] == 0) continue;
-    const unsigned lane = RTCRayN_id(rays, count, i);
-    if (!q.visits[lane].enters(part.box)) continue;
-    asked.lanes |= 1U << lane;
-    asked.at[lane] = i;
-  }
-  return asked;
+void ask(const RTCIntersectFunctionNArguments* a, const PartsOfSolid& of, const SolidPart& part, PartVisit& visit) {
+  if (visit.in(part.box).empty()) return;
+  float& t_far = RTCRayN_tfar(RTCRayHitN_RayN(a->rayhit, a->N), a->N, 0);
+  ElementLog log = visit.before(*of.solid);
+  const auto t = of.solid->hit_in_part(part, visit.ray, false, log);
+  if (visit.take(a->geomID, *of.solid, part, t_or_infinity(t), log)) t_far = embree_t(visit, visit.best.t);
+  if (log.begins_inside) t_far = done;
 }
 
-// Asks a part for some lanes; `take` gets lane, t (infinity: no hit) and log of each.
-template <class Take>
-void ask(const Query& q, const Solid& solid, const SolidPart& part, unsigned lanes, bool any, const Take& take) {
-  if (std::has_single_bit(lanes)) {
-    const int lane = std::countr_zero(lanes);
-    const PartVisit& visit = q.visits[lane];
-    ElementLog log = visit.before(solid);
-    const auto t = solid.hit_in_part(part, visit.ray, any, log);
-    take(static_cast<std::size_t>(lane), t.value_or(std::numeric_limits<double>::infinity()), log);
-    return;
-  }
-  PacketLog log;
-  for_each_lane(lanes, [&](std::size_t lane) { log.lanes[lane] = q.visits[lane].before(solid); });
-  solid.hits_in_part(part, *q.packet, lanes, any, log);
-  for_each_lane(lanes, [&](std::size_t lane) { take(lane, log.t[lane], log.lanes[lane]); });
+// Behind what is found by now nothing more need be found.
+void note(const RTCIntersectFunctionNArguments* a, const SolidPart& part, StreamedRay& ray, float& t_far) {
+  const PartVisit::Stretch inside = ray.visit.in(part.box);
+  if (inside.empty()) return;
+  ray.ahead.add({.enter = inside.enter, .solid = a->geomID, .part = a->primID});
+  if (ray.ahead.full()) t_far = std::min(t_far, embree_t(ray.visit, ray.ahead.end()));
 }
 
 void intersect_callback(const RTCIntersectFunctionNArguments* a) {
   const auto& q = *static_cast<const Query*>(a->context);
-  const PartsOfSolid& solid = parts_of(a->geometryUserPtr);
-  const SolidPart& part = solid.parts[a->primID];
+  const PartsOfSolid& of = parts_of(a->geometryUserPtr);
+  const SolidPart& part = of.parts[a->primID];
+  if (q.single != nullptr) return ask(a, of, part, *q.single);
   RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
-  const Asked asked = asked_of(q, part, a->valid, rays, a->N);
-  if (asked.lanes == 0) return;
-  ask(q, *solid.solid, part, asked.lanes, false, [&](std::size_t lane, double t, const ElementLog& log) {
-    PartVisit& visit = q.visits[lane];
-    float& t_far = RTCRayN_tfar(rays, a->N, asked.at[lane]);
-    if (visit.take(a->geomID, *solid.solid, part, t, log)) t_far = embree_t(visit, t);
-    if (log.begins_inside) t_far = done;
-  });
+  for (unsigned i = 0; i < a->N; ++i)
+    if (a->valid[i] != 0) note(a, part, *q.stream[RTCRayN_id(rays, a->N, i)], RTCRayN_tfar(rays, a->N, i));
 }
 
 void occluded_callback(const RTCOccludedFunctionNArguments* a) {
-  const auto& q = *static_cast<const Query*>(a->context);
-  const PartsOfSolid& solid = parts_of(a->geometryUserPtr);
-  const SolidPart& part = solid.parts[a->primID];
-  const Asked asked = asked_of(q, part, a->valid, a->ray, a->N);
-  if (asked.lanes == 0) return;
-  ask(q, *solid.solid, part, asked.lanes, true, [&](std::size_t lane, double t, const ElementLog&) {
-    if (t < std::numeric_limits<double>::infinity()) RTCRayN_tfar(a->ray, a->N, asked.at[lane]) = done;
-  });
+  const PartVisit& visit = *static_cast<const Query*>(a->context)->single;
+  const PartsOfSolid& of = parts_of(a->geometryUserPtr);
+  const SolidPart& part = of.parts[a->primID];
+  if (visit.in(part.box).empty()) return;
+  ElementLog log = visit.before(*of.solid);
+  if (of.solid->hit_in_part(part, visit.ray, true, log)) RTCRayN_tfar(a->ray, a->N, 0) = done;
 }
 
-// The part of a ray inside a box; false when it misses.
-bool clip(const Box3& box, const Ray& ray, double& t0, double& t1) {
-  t0 = ray.t_min;
-  t1 = ray.t_max;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double o = ray.origin[i], d = ray.direction.vec()[i];
-    if (d == 0) {
-      if (o < box.lower[i] || o > box.upper[i]) return false;
-      continue;
-    }
-    const double a = (box.lower[i] - o) / d, b = (box.upper[i] - o) / d;
-    t0 = std::max(t0, std::min(a, b));
-    t1 = std::min(t1, std::max(a, b));
-  }
-  return t0 <= t1;
-}
-
-// Makes the ray ready for Embree, as the given one of N; false when it misses all boxes.
+// Makes the ray ready for Embree, as the given one of `count`; false when it misses all boxes.
 bool start(const Box3& bounds, PartVisit& visit, RTCRayN* rays, unsigned count, unsigned lane) {
-  double t_end = 0;
-  if (!clip(bounds, visit.ray, visit.t_start, t_end)) return false;
+  const PartVisit::Stretch inside = visit.in(bounds);
+  if (inside.empty()) return false;
+  visit.t_start = inside.enter;
   const Vec3d origin = visit.ray.at(visit.t_start);
   RTCRayN_org_x(rays, count, lane) = static_cast<float>(origin.x);
   RTCRayN_org_y(rays, count, lane) = static_cast<float>(origin.y);
@@ -139,26 +92,30 @@ bool start(const Box3& bounds, PartVisit& visit, RTCRayN* rays, unsigned count, 
   RTCRayN_dir_x(rays, count, lane) = static_cast<float>(visit.ray.direction.x());
   RTCRayN_dir_y(rays, count, lane) = static_cast<float>(visit.ray.direction.y());
   RTCRayN_dir_z(rays, count, lane) = static_cast<float>(visit.ray.direction.z());
-  RTCRayN_tfar(rays, count, lane) = embree_t(visit, t_end);
+  RTCRayN_tfar(rays, count, lane) = embree_t(visit, inside.exit);
   RTCRayN_mask(rays, count, lane) = ~0U;
   RTCRayN_id(rays, count, lane) = lane;
   return true;
 }
 
-// A packet of rays on their way. Where Embree has no packets of sixteen it takes rays by their intervals, whatever
-// `valid` says: those that are not to be asked get none.
-struct Starts {
-  Starts(const Box3& bounds, const RayPacket& packet, unsigned lanes, RTCRay16& rays) {
-    auto* of_any_count = reinterpret_cast<RTCRayN*>(&rays);
-    std::fill_n(rays.tfar, RayPacket::size, done);
-    for_each_lane(lanes, [&](std::size_t lane) {
-      visits[lane] = PartVisit(packet.ray(lane));
-      if (start(bounds, visits[lane], of_any_count, RayPacket::size, static_cast<unsigned>(lane))) valid[lane] = -1;
-    });
-  }
-  alignas(64) std::array<int, RayPacket::size> valid{};
-  std::array<PartVisit, RayPacket::size> visits;
-};
+// The same of a ray that may have been through some parts. The float search of boxes must not lose those that it comes
+// into at the same place.
+bool start(const Box3& bounds, StreamedRay& streamed, RTCRayN* rays, unsigned count, unsigned lane) {
+  PartVisit& visit = streamed.visit;
+  if (!start(bounds, visit, rays, count, lane)) return false;
+  const double gone = (streamed.ahead.beginning() - visit.t_start) * (1 - 1e-6);
+  if (gone > 0) RTCRayN_tnear(rays, count, lane) = static_cast<float>(gone);
+  return true;
+}
+
+// Neighbours of one direction: then a packet shares most of its boxes.
+bool go_together(std::span<StreamedRay* const> rays) {
+  constexpr std::size_t worth_a_packet = 3;
+  constexpr double least_cosine = 0.99;
+  return rays.size() >= worth_a_packet && std::ranges::all_of(rays, [&](const StreamedRay* r) {
+           return dot(r->visit.ray.direction, rays[0]->visit.ray.direction) >= least_cosine;
+         });
+}
 
 void attach(RTCDevice device, RTCScene scene, PartsOfSolid& p) {
   RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
@@ -192,14 +149,20 @@ Result<std::unique_ptr<PartHierarchy>> PartHierarchy::make(RTCDeviceTy* device, 
   return h;
 }
 
+PartHierarchy::PartHierarchy(std::vector<PartsOfSolid> solids) : solids_(std::move(solids)), first_part_{0} {
+  for (const PartsOfSolid& s : solids_) {
+    first_part_.push_back(first_part_.back() + static_cast<std::uint32_t>(s.parts.size()));
+    traces_packets_ |= s.solid->traces_packets();
+  }
+}
+
 PartHierarchy::Hit PartHierarchy::first_hit(const Ray& ray, std::vector<ElementLog>* logs) const {
   PartVisit visit(ray);
   visit.logs = logs;
   RTCRayHit rayhit{};
+  rayhit.hit.geomID = rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   if (!start(padded_bounds_, visit, reinterpret_cast<RTCRayN*>(&rayhit.ray), 1, 0)) return {};
-  rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  Query q(&visit, nullptr);
+  Query q(visit);
   rtcIntersect1(scene_.get(), &q, &rayhit);
   return visit.best;
 }
@@ -208,48 +171,37 @@ bool PartHierarchy::occluded(const Ray& ray) const {
   PartVisit visit(ray);
   RTCRay r{};
   if (!start(padded_bounds_, visit, reinterpret_cast<RTCRayN*>(&r), 1, 0)) return false;
-  Query q(&visit, nullptr);
+  Query q(visit);
   rtcOccluded1(scene_.get(), &q, &r);
   return r.tfar < 0;
 }
 
-void PartHierarchy::first_hits(const RayPacket& packet, unsigned lanes, Hits& hits, Logs* logs) const {
-  const auto log_of = [logs](std::size_t lane) { return logs == nullptr ? nullptr : &(*logs)[lane]; };
-  if (std::popcount(lanes) < worth_a_packet) {
-    for_each_lane(lanes, [&](std::size_t lane) { hits[lane] = first_hit(packet.ray(lane), log_of(lane)); });
+void PartHierarchy::find_parts(std::span<StreamedRay* const> rays) const {
+  Query q(rays);
+  if (!go_together(rays)) {
+    for (unsigned i = 0; i < rays.size(); ++i) {
+      RTCRayHit rayhit{};
+      auto* ray = reinterpret_cast<RTCRayN*>(&rayhit.ray);
+      rayhit.hit.geomID = rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      if (!start(padded_bounds_, *rays[i], ray, 1, 0)) continue;
+      RTCRayN_id(ray, 1, 0) = i;
+      rtcIntersect1(scene_.get(), &q, &rayhit);
+    }
     return;
   }
+  // Boxes are met in the order of the whole packet, which suits neighbours. What a frustum of rays misses each of them
+  // misses, up to the same rounding.
+  q.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  alignas(64) std::array<int, most_together> valid{};
   RTCRayHit16 rayhits{};
-  Starts starts(padded_bounds_, packet, lanes, rayhits.ray);
-  std::fill_n(rayhits.hit.geomID, RayPacket::size, RTC_INVALID_GEOMETRY_ID);
-  std::fill_n(rayhits.hit.instID[0], RayPacket::size, RTC_INVALID_GEOMETRY_ID);
-  for_each_lane(lanes, [&](std::size_t lane) { starts.visits[lane].logs = log_of(lane); });
-  Query q(starts.visits.data(), &packet);
-  rtcIntersect16(starts.valid.data(), scene_.get(), &q, &rayhits);
-  for_each_lane(lanes, [&](std::size_t lane) { hits[lane] = starts.visits[lane].best; });
-}
-
-unsigned PartHierarchy::occluded(const RayPacket& packet, unsigned lanes) const {
-  unsigned hidden = 0;
-  if (std::popcount(lanes) < worth_a_packet) {
-    for_each_lane(lanes,
-                  [&](std::size_t lane) { hidden |= static_cast<unsigned>(occluded(packet.ray(lane))) << lane; });
-    return hidden;
-  }
-  RTCRay16 rays{};
-  Starts starts(padded_bounds_, packet, lanes, rays);
-  Query q(starts.visits.data(), &packet);
-  rtcOccluded16(starts.valid.data(), scene_.get(), &q, &rays);
-  for_each_lane(lanes, [&](std::size_t lane) {
-    hidden |= static_cast<unsigned>(starts.valid[lane] != 0 && rays.tfar[lane] < 0) << lane;
-  });
-  return hidden;
-}
-
-std::size_t PartHierarchy::part_count() const {
-  std::size_t sum = 0;
-  for (const PartsOfSolid& s : solids_) sum += s.parts.size();
-  return sum;
+  // Where Embree has no packets of sixteen it takes rays by their intervals, whatever `valid` says: those that are not
+  // to be asked get none.
+  std::fill_n(rayhits.ray.tfar, most_together, done);
+  std::fill_n(rayhits.hit.geomID, most_together, RTC_INVALID_GEOMETRY_ID);
+  std::fill_n(rayhits.hit.instID[0], most_together, RTC_INVALID_GEOMETRY_ID);
+  for (unsigned i = 0; i < rays.size(); ++i)
+    if (start(padded_bounds_, *rays[i], reinterpret_cast<RTCRayN*>(&rayhits.ray), most_together, i)) valid[i] = -1;
+  rtcIntersect16(valid.data(), scene_.get(), &q, &rayhits);
 }
 
 }  // namespace marrow

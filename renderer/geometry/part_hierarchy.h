@@ -5,14 +5,15 @@
 // lose a box, on any instruction set; ray origins are moved up to the boxes' bounds to keep M its own size.
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "field/base/result.h"
 #include "renderer/geometry/embree_handles.h"
-#include "renderer/geometry/part_visit.h"
 #include "renderer/geometry/solid.h"
+#include "renderer/geometry/streamed_ray.h"
 
 namespace marrow {
 
@@ -28,22 +29,27 @@ class PartHierarchy {
   static Result<std::unique_ptr<PartHierarchy>> make(RTCDeviceTy* device, std::vector<PartsOfSolid> solids);
 
   using Hit = PartHit;
-  using Hits = std::array<Hit, RayPacket::size>;
   /// The smallest t wins; at equal t the lower solid, the lower element, the part entered first: the order of traversal
   /// shows nowhere. `logs`, if any, is told of all parts visited.
   Hit first_hit(const Ray&, std::vector<ElementLog>* logs) const;
   bool occluded(const Ray&) const;
-  using Logs = std::array<std::vector<ElementLog>, RayPacket::size>;
-  /// The same for the rays of `lanes` (bit i is lane i), to the same bits; `hits` of other lanes are left as they are.
-  void first_hits(const RayPacket&, unsigned lanes, Hits& hits, Logs* logs = nullptr) const;
-  /// Those of `lanes` that are occluded.
-  unsigned occluded(const RayPacket&, unsigned lanes) const;
-  std::size_t part_count() const;
+
+  static constexpr std::size_t most_together = 16;
+  /// The nearest parts ahead of each of at most `most_together` rays; sooner when they are neighbours.
+  void find_parts(std::span<StreamedRay* const>) const;
+  /// Whether any solid traces packets: then it is worth taking rays together.
+  bool traces_packets() const { return traces_packets_; }
+  std::size_t part_count() const { return first_part_.back(); }
+  /// Among all parts, from 0 on.
+  std::uint32_t number_of(const PartEntry& entry) const { return first_part_[entry.solid] + entry.part; }
+  const PartsOfSolid& solid(std::size_t index) const { return solids_[index]; }
 
  private:
-  explicit PartHierarchy(std::vector<PartsOfSolid> solids) : solids_(std::move(solids)) {}
+  explicit PartHierarchy(std::vector<PartsOfSolid>);
 
   std::vector<PartsOfSolid> solids_;
+  std::vector<std::uint32_t> first_part_;  // the number of each solid's first part, and that of all
+  bool traces_packets_ = false;
   Box3 padded_bounds_;  // what rays are clipped to
   EmbreeScene scene_;
 };

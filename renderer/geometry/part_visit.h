@@ -30,17 +30,23 @@ class PartVisit {
   PartHit best;
   std::vector<ElementLog>* logs = nullptr;  ///< told of all parts, if there is one
 
-  /// Whether the ray comes into a box before its end and before the best hit. A ray exactly in the plane of a padded
-  /// face gives NaN and may count either way; what the box is padded for is not there.
-  bool enters(const Box3& box) const {
-    double enter = ray.t_min, exit = std::min(ray.t_max, best.t);
+  /// Where the ray is in a box, before its end and before the best hit. A ray exactly in the plane of a padded face
+  /// gives NaN and may count either way; what the box is padded for is not there.
+  struct Stretch {
+    double enter, exit;
+    bool empty() const { return !(enter <= exit); }
+  };
+  Stretch in(const Box3& box) const {
+    Stretch s{ray.t_min, last()};
     for (std::size_t i = 0; i < 3; ++i) {
       const double a = (box.lower[i] - ray.origin[i]) * inverse_[i], b = (box.upper[i] - ray.origin[i]) * inverse_[i];
-      enter = std::max(enter, std::min(a, b));
-      exit = std::min(exit, std::max(a, b));
+      s.enter = std::max(s.enter, std::min(a, b));
+      s.exit = std::min(s.exit, std::max(a, b));
     }
-    return enter <= exit;
+    return s;
   }
+  /// What lies behind it does not matter any more.
+  double last() const { return std::min(ray.t_max, best.t); }
 
   /// What a part of the solid is told of the ray.
   ElementLog before(const Solid& solid) const {

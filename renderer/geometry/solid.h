@@ -57,8 +57,10 @@ class Solid {
   virtual std::optional<double> hit_in_part(const SolidPart& part, const Ray& ray, bool any, ElementLog& log) const {
     return hit(part.element, ray, any, log);
   }
-  /// hit_in_part() for the rays of `lanes` (bit i is lane i), to the same bits; `log` is of these lanes only.
-  virtual void hits_in_part(const SolidPart&, const RayPacket&, unsigned lanes, bool any, PacketLog& log) const;
+  /// Whether rays are traced sooner together than one by one.
+  virtual bool traces_packets() const { return false; }
+  /// hit_in_part() for the rays of `lanes`, to the same bits; `log` is of these lanes only.
+  virtual void hits_in_part(const SolidPart&, const RayPacket&, LaneSet lanes, bool any, PacketLog& log) const;
   /// Fills normal, outside and material of a hit whose position is known; `place` as hit() told it.
   virtual void describe(std::size_t element, const void* place, const Ray&, SurfaceHit&) const = 0;
   virtual std::size_t primitive_count() const = 0;
@@ -71,7 +73,7 @@ inline std::vector<SolidPart> Solid::parts() const {
   return parts;
 }
 
-inline void Solid::hits_in_part(const SolidPart& part, const RayPacket& packet, unsigned lanes, bool any,
+inline void Solid::hits_in_part(const SolidPart& part, const RayPacket& packet, LaneSet lanes, bool any,
                                 PacketLog& log) const {
   for_each_lane(lanes, [&](std::size_t lane) {
     const auto t = hit_in_part(part, packet.ray(lane), any, log.lanes[lane]);

@@ -41,8 +41,8 @@ class Surfaces {
   virtual std::optional<SurfaceHit> first_hit(const Ray&, RayRecord&) const = 0;
   /// Whether any surface lies on the ray within its interval.
   virtual bool occluded(const Ray&) const = 0;
-  /// What first_hit() finds for each of at most RayPacket::size rays, to the same bits. Sooner where they are
-  /// neighbours.
+  /// What first_hit() finds for each of the rays, to the same bits. Sooner for many rays through the same region, those
+  /// of neighbouring pixels next to each other.
   virtual void first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits) const {
     for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = first_hit(rays[i]);
   }
@@ -51,11 +51,9 @@ class Surfaces {
                           std::span<RayRecord> records) const {
     for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = first_hit(rays[i], records[i]);
   }
-  /// What occluded() says of each of at most RayPacket::size rays: bit i is of rays[i].
-  virtual unsigned which_occluded(std::span<const Ray> rays) const {
-    unsigned hidden = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) hidden |= static_cast<unsigned>(occluded(rays[i])) << i;
-    return hidden;
+  /// What occluded() says of each of the rays: hidden[i] becomes 1 or 0.
+  virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> hidden) const {
+    for (std::size_t i = 0; i < rays.size(); ++i) hidden[i] = occluded(rays[i]) ? 1 : 0;
   }
   /// Of all finite objects; planes do not count. Empty when there are none.
   virtual Box3 bounds() const = 0;

@@ -1,5 +1,6 @@
 #include "renderer/transport/pixel_block.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -7,17 +8,26 @@
 namespace marrow {
 namespace {
 
+// Four by four, so that rays that follow each other are neighbours.
+template <class Visit>
+void for_each_pixel(const PixelWindow& window, const Visit& visit) {
+  constexpr int side = 4;
+  for (int y0 = window.y0; y0 < window.y1; y0 += side)
+    for (int x0 = window.x0; x0 < window.x1; x0 += side)
+      for (int y = y0; y < std::min(y0 + side, window.y1); ++y)
+        for (int x = x0; x < std::min(x0 + side, window.x1); ++x) visit(x, y);
+}
+
 // The pixels of a block, and one camera sample of each: one entry a pixel in all lists.
 struct Block {
   Block(const PixelWindow& window, std::uint64_t seed, Film& film) {
     const auto count = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
     pixels.reserve(count);
     samplers.reserve(count);
-    for (int y = window.y0; y < window.y1; ++y)
-      for (int x = window.x0; x < window.x1; ++x) {
-        pixels.push_back({x + 0.5, y + 0.5, &film.at(x, y)});
-        samplers.emplace_back(x, y, seed);
-      }
+    for_each_pixel(window, [&](int x, int y) {
+      pixels.push_back({x + 0.5, y + 0.5, &film.at(x, y)});
+      samplers.emplace_back(x, y, seed);
+    });
     rays.resize(count);
     hits.resize(count);
     radiances.resize(count);

@@ -24,8 +24,8 @@ struct PixelJob {
   PixelFilter filter{};
 };
 
-/// The side of a block: together its pixels have as many rays as a packet.
-constexpr int block_side = 4;
+/// The side of a block: many rays of it come to the same parts of surfaces, and what it holds fits into a cache.
+constexpr int block_side = 32;
 
 /// The samples of a pass of at most block_side x block_side pixels of the film. A pixel's samples are added in order,
 /// and have the same bits whatever pixels are with it. The channels free of noise come from a ray through the pixel's

@@ -26,7 +26,7 @@ struct RenderOptions {
   /// film bit by bit.
   std::optional<PixelWindow> crop{};
   int threads = 0;     ///< 0: as many as the process may use (obeys affinity)
-  int tile_size = 16;  ///< side in pixels of what one thread takes at a time; at least 1
+  int tile_size = 32;  ///< side in pixels of what one thread takes at a time; at least 1
   /// Checked between passes over the picture; the next pass is made small enough to fit. One sample is always taken.
   std::optional<double> time_limit_s{};
   /// Called by one thread at a time, at most ten times a second, and once at the end.

@@ -11,8 +11,10 @@
 namespace marrow::test {
 namespace {
 
-using Hits = std::array<std::optional<SurfaceHit>, RayPacket::size>;
+using Hits = std::vector<std::optional<SurfaceHit>>;
 using Rays = std::vector<Ray>;
+
+constexpr int together = 100;  // more than go into a packet
 
 MeshShape shards(Random& random) {
   MeshShape mesh;
@@ -44,15 +46,15 @@ std::unique_ptr<EmbreeSurfaces> everything(Random& random, const BlendField& ble
   return std::move(*EmbreeSurfaces::make(std::move(solids), std::move(planes), config));
 }
 
-// Sixteen rays through neighbouring points, from a place or side by side.
+// Rays through neighbouring points, from a place or side by side.
 Rays of_a_camera(Random& random) {
   const Vec3d target = random.vector(1.6), eye = random_direction(random) * (random.between(0, 1) < 0.2 ? 1e5 : 7);
   const Frame frame = Frame::around(normalize(eye - target));
   const double spacing = std::exp2(random.between(-12, -1));
   const bool parallel = random.between(0, 1) < 0.3;
   Rays rays;
-  for (int i = 0; i < RayPacket::size; ++i) {
-    const Vec3d aside = frame.to_world({spacing * (i % 4), spacing * (i / 4), 0});
+  for (int i = 0; i < together; ++i) {
+    const Vec3d aside = frame.to_world({spacing * (i % 8), spacing * (i / 8), 0});
     rays.push_back(parallel ? Ray{eye + aside, -frame.z} : between(eye, target + aside));
   }
   return rays;
@@ -68,7 +70,7 @@ Rays of_faces(Random& random, const EmbreeSurfaces& surfaces) {
   direction[axis] = random.between(0, 1) < 0.5 ? -1 : 1;
   const double distance = random.between(0, 1) < 0.2 ? 1e5 : 8;
   Rays rays;
-  for (int i = 0; i < RayPacket::size; ++i) {
+  for (int i = 0; i < together; ++i) {
     const Solid& solid = *surfaces.solids()[pick(surfaces.solids().size())].solid;
     const Box3 box = solid.element_box(pick(solid.element_count()));
     Vec3d target;
@@ -111,13 +113,12 @@ struct Comparison {
   int rays = 0, hits = 0, hidden = 0, differ = 0;
 
   void check(const Surfaces& surfaces, std::span<const Ray> batch) {
-    Hits found;
+    Hits found(batch.size()), recorded(batch.size());
     surfaces.first_hits(batch, found);
-    Hits recorded;
-    std::array<RayRecord, RayPacket::size> records;
+    std::vector<RayRecord> records(batch.size());
     surfaces.first_hits(batch, recorded, records);
-    const unsigned occluded = surfaces.which_occluded(batch);
-    EXPECT_EQ(occluded >> batch.size(), 0u);
+    std::vector<std::uint8_t> occluded(batch.size(), 7);
+    surfaces.occluded(batch, occluded);
     for (std::size_t i = 0; i < batch.size(); ++i, ++rays) {
       const auto expected = surfaces.first_hit(batch[i]);
       const bool hides = surfaces.occluded(batch[i]);
@@ -126,7 +127,7 @@ struct Comparison {
       RayRecord record;
       differ += !same(surfaces.first_hit(batch[i], record), recorded[i]) ||
                 record.evaluations != records[i].evaluations || record.certified != records[i].certified;
-      differ += !same(expected, found[i]) || hides != static_cast<bool>(occluded >> i & 1);
+      differ += !same(expected, found[i]) || occluded[i] != (hides ? 1 : 0);
     }
   }
   static bool same(const std::optional<SurfaceHit>& a, const std::optional<SurfaceHit>& b) {
@@ -143,15 +144,15 @@ struct Comparison {
   }
 };
 
-// Packets of sixteen, eight and four in Embree, and from whole elements down to single cells.
+// Packets of sixteen, eight and four in Embree, or single rays, and from whole elements down to single cells.
 TEST(RayPackets, EqualSingleRays) {
   for (const std::string isa : {"sse4.2", "avx2", "avx512"}) {
     Random random(131);
     Comparison camera, faces, shadows, mixed, few;
     const BlendField blend = random_scene(random, {4, contact_alpha(4)}, 5);
     const auto surfaces = everything(random, blend, "threads=1,max_isa=" + isa);
-    for (int i = 0; i < 400; ++i) {
-      if (i % 60 == 59) surfaces->refine();
+    for (int i = 0; i < 80; ++i) {
+      if (i % 15 == 14) surfaces->refine();
       camera.check(*surfaces, of_a_camera(random));
       faces.check(*surfaces, of_faces(random, *surfaces));
       shadows.check(*surfaces, of_shadows(random, *surfaces));
@@ -174,8 +175,8 @@ TEST(RayPackets, EqualSingleRaysFarFromTheOrigin) {
   const Vec3d away{1000, 1000, -1000};
   const BlendField blend = random_scene(random, {4, 0.3}, 5);
   const SolidScene scene({placed(moved(blend, away))});
-  for (int i = 0; i < 1000; ++i) {
-    if (i % 200 == 199) scene.surfaces().refine();
+  for (int i = 0; i < 180; ++i) {
+    if (i % 40 == 39) scene.surfaces().refine();
     Rays rays = of_a_camera(random);
     for (Ray& ray : rays) ray = moved(ray, away);
     all.check(scene.surfaces(), rays);
@@ -187,11 +188,13 @@ TEST(RayPackets, EqualSingleRaysFarFromTheOrigin) {
 TEST(RayPackets, OfNothingHitNothing) {
   const auto made = EmbreeSurfaces::make({}, {}, "threads=1");
   ASSERT_TRUE(made);
-  const std::vector<Ray> rays(RayPacket::size, Ray{{0, 0, 5}, UnitVec3::unchecked({0, 0, -1})});
-  Hits hits;
+  const Rays rays(together, Ray{{0, 0, 5}, UnitVec3::unchecked({0, 0, -1})});
+  Hits hits(rays.size(), SurfaceHit{});
   (*made)->first_hits(rays, hits);
   for (const auto& hit : hits) EXPECT_FALSE(hit);
-  EXPECT_EQ((*made)->which_occluded(rays), 0u);
+  std::vector<std::uint8_t> hidden(rays.size(), 1);
+  (*made)->occluded(rays, hidden);
+  EXPECT_EQ(hidden, std::vector<std::uint8_t>(rays.size(), 0));
 }
 
 }  // namespace

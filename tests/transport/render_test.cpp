@@ -1,6 +1,7 @@
 // Pictures have the same bits however they are made, and stop when told.
 #include "renderer/transport/render.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cfenv>
@@ -61,30 +62,30 @@ class CountingSurfaces final : public Surfaces {
   }
   bool occluded(const Ray& ray) const override { return surfaces_.occluded(ray); }
   void first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits) const override {
-    ++together.at(rays.size());
+    together.push_back(rays.size());
     surfaces_.first_hits(rays, hits);
   }
-  unsigned which_occluded(std::span<const Ray> rays) const override {
-    shadow_rays += rays.size();
-    return surfaces_.which_occluded(rays);
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> hidden) const override {
+    shadow_rays.push_back(rays.size());
+    surfaces_.occluded(rays, hidden);
   }
   Box3 bounds() const override { return surfaces_.bounds(); }
 
-  mutable std::array<int, 17> together{};
-  mutable std::size_t shadow_rays = 0;
+  mutable std::vector<std::size_t> together, shadow_rays;
 
  private:
   const Surfaces& surfaces_;
 };
 
-TEST(Render, RaysOfSixteenPixelsGoTogether) {
+TEST(Render, RaysOfABlockOfPixelsGoTogether) {
   const CountingSurfaces counting(ball_on_floor);
-  const RenderScene scene = studio(20, 10, counting);
-  render(scene, {.integrator = RenderSettings::Integrator::Direct, .samples_per_pixel = 3}, {.threads = 1});
-  // Rows of five blocks: two of whole ones, one of halves
-  EXPECT_EQ(counting.together[16], 3 * 10);
-  EXPECT_EQ(counting.together[8], 3 * 5);
-  EXPECT_GT(counting.shadow_rays, 100u);
+  const RenderScene scene = studio(40, 10, counting);
+  render(scene, {.integrator = RenderSettings::Integrator::Direct, .samples_per_pixel = 3},
+         {.threads = 1, .tile_size = 32});
+  // A block of 32 columns and one of 8, three samples each
+  EXPECT_EQ(std::ranges::count(counting.together, 320u), 3);
+  EXPECT_EQ(std::ranges::count(counting.together, 80u), 3);
+  EXPECT_GT(std::ranges::max(counting.shadow_rays), 100u);
 }
 
 // A program that embeds the renderer may have set another rounding, on which every sum depends.

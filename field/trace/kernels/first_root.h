@@ -8,25 +8,38 @@ struct QueryOf {
   MaskOf<F> from_surface, from_outside;
 };
 
+// Until it ends.
+template <bool Varied>
+inline RootOf<float> decide(Search<Varied>& search, float guess, bool any_root) {
+  Decision<Varied> decision(search, guess, any_root);
+  while (decision.step(true)) {}
+  RootOf<float> root;
+  root.t = decision.t;
+  root.hit = decision.hit;
+  root.undecided = decision.undecided();
+  return root;
+}
+
 // The coarse level finds where to look, the fine level decides.
-template <bool Varied, class F>
-inline RootOf<F> root_in(const BlockView& block, const RayOf<F>& ray, const Run<F>& run, bool any_root,
-                         MaskOf<F> rays) {
-  RootOf<F> root;
-  Marcher<Varied, F> march(block, block.coarse(), ray);
-  Search<Varied, F> search(march, run.begin, run.end);
-  const Approach<F> approached = approach(search, any_root, rays);
-  if (any(approached.near)) {
-    Marcher<Varied, F> fine(block, block.fine(), ray);
-    Search<Varied, F> close(fine, search.front, run.end);
-    root = decide(close, min_of(max_of(approached.guess, search.front), run.end), any_root, approached.near);
+template <bool Varied>
+inline RootOf<float> root_in(const BlockView& block, const LocalRay& ray, const Run<float>& run, bool any_root) {
+  RootOf<float> root;
+  Marcher<Varied> march(block, block.coarse(), ray);
+  Search<Varied> search(march, run.begin, run.end);
+  Approach<Varied> approach(search, any_root);
+  while (approach.step(true)) {}
+  if (approach.near) {
+    Marcher<Varied> fine(block, block.fine(), ray);
+    Search<Varied> close(fine, search.front, run.end);
+    root = decide(close, min_of(max_of(approach.guess, search.front), run.end), any_root);
     root.evaluations = fine.evaluations;
     root.begins_outside = close.have_last;
+  } else if (approach.surely_inside) {
+    root.hit = true;
+    root.t = search.inside.t;
   }
-  root.hit = root.hit | approached.surely_inside;
-  root.t = select(approached.surely_inside, search.inside.t, root.t);
-  root.evaluations = root.evaluations + march.evaluations;
-  root.begins_outside = root.begins_outside | search.have_last;
+  root.evaluations += march.evaluations;
+  root.begins_outside |= search.have_last;
   return root;
 }
 
@@ -38,7 +51,7 @@ inline RootOf<float> exit_in(const BlockView& block, const LocalRay& ray, const 
   Search<Varied> search(march, run.begin, run.end);
   search.record(true, march.sample(run.begin, true));
   RootOf<float> root;
-  if (!search.missed()) root = decide(search, search.guess(), any_root, true);
+  if (!search.missed()) root = decide(search, search.guess(), any_root);
   root.evaluations = march.evaluations;
   return root;
 }
@@ -59,31 +72,8 @@ inline bool is_inside(const BlockView& block, const LocalRay& ray, float t, int&
   return march.sample(t, true).nominal < -clearly_inside;
 }
 
-inline void find_sides(bool, const BlockView& block, const LocalRay& ray, float t, bool varied, RootOf<float>& root) {
-  root.enters_inside =
-      varied ? is_inside<true>(block, ray, t, root.evaluations) : is_inside<false>(block, ray, t, root.evaluations);
-}
-
-inline LocalRay ray_of_lane(const Ray16& rays, int lane) {
-  LocalRay ray;
-  for (int k = 0; k < 3; ++k) {
-    ray.origin[k] = rays.origin[k][lane];
-    ray.direction[k] = rays.direction[k][lane];
-  }
-  return ray;
-}
-
-inline void find_sides(Index16 asked, const BlockView& block, const Ray16& rays, V16 t, bool, RootOf<V16>& root) {
-  for (unsigned left = lane_bits(asked); left != 0; left &= left - 1) {
-    const int lane = __builtin_ctz(left);
-    int evaluations = 0;
-    root.enters_inside[lane] = is_inside<false>(block, ray_of_lane(rays, lane), t[lane], evaluations) ? -1 : 0;
-    root.evaluations[lane] += evaluations;
-  }
-}
-
 // A ray that begins at a surface is too near for the coarse level: one fine certificate leads away. Returns the rays
-// that are to go on from `front`.
+// that are to go on from `front`; those that end here have a hit, or nothing.
 template <bool Varied, class F>
 inline MaskOf<F> leave_surface(const BlockView& block, const RayOf<F>& ray, const QueryOf<F>& query, MaskOf<F> rays,
                                RootOf<F>& root, F& front) {
@@ -102,36 +92,25 @@ inline MaskOf<F> leave_surface(const BlockView& block, const RayOf<F>& ray, cons
   return outside & !start.missed();
 }
 
-template <bool Varied, class F>
-inline RootOf<F> first_root_of(const BlockView& block, const RayOf<F>& ray, const QueryOf<F>& query, MaskOf<F> open) {
-  using Mask = MaskOf<F>;
-  RootOf<F> root;
-  root.begins_outside = open & query.from_outside;
-  F front = query.t0;
-  if (const Mask starts = open & query.from_surface; !query.leaving && any(starts)) {
-    const Mask go_on = leave_surface<Varied>(block, ray, query, starts, root, front);
-    open = open & (go_on | !starts);
-  }
-  Runs<F> runs(block, ray, front, query.t1);
-  Run<F> run;
-  while (any(open)) {
-    open = open & runs.next(open, run);
-    if (!any(open)) break;
-    RootOf<F> found;
-    if constexpr (sizeof(F) == sizeof(float))
-      found = query.leaving ? exit_in<Varied>(block, ray, run, query.any)
-                            : root_in<Varied, F>(block, ray, run, query.any, open);
-    else found = root_in<Varied, F>(block, ray, run, query.any, open);
-    const Mask hit = open & found.hit;
-    root.hit = root.hit | hit;
-    root.t = select(hit, found.t, root.t);
-    root.undecided = select(open, min_of(root.undecided, found.undecided), root.undecided);
-    root.evaluations = root.evaluations + found.evaluations;
-    root.begins_outside = root.begins_outside | (open & found.begins_outside);
+template <bool Varied>
+inline RootOf<float> first_root_of(const BlockView& block, const LocalRay& ray, const QueryOf<float>& query) {
+  RootOf<float> root;
+  root.begins_outside = query.from_outside;
+  float front = query.t0;
+  if (!query.leaving && query.from_surface && !leave_surface<Varied>(block, ray, query, true, root, front)) return root;
+  Runs<float> runs(block, ray, front, query.t1);
+  Run<float> run;
+  while (!root.hit && runs.next(true, run)) {
+    const RootOf<float> found =
+        query.leaving ? exit_in<Varied>(block, ray, run, query.any) : root_in<Varied>(block, ray, run, query.any);
+    root.hit = found.hit;
+    if (found.hit) root.t = found.t;
+    root.undecided = min_of(root.undecided, found.undecided);
+    root.evaluations += found.evaluations;
+    root.begins_outside |= found.begins_outside;
     // Any root will do: a ray that begins inside meets one where it leaves.
-    const Mask unknown = hit & !root.begins_outside;
-    if (!query.leaving && !query.any && any(unknown)) find_sides(unknown, block, ray, run.begin, Varied, root);
-    open = open & !hit;
+    if (found.hit && !root.begins_outside && !query.leaving && !query.any)
+      root.enters_inside = is_inside<Varied>(block, ray, run.begin, root.evaluations);
   }
   return root;
 }
@@ -139,7 +118,7 @@ inline RootOf<F> first_root_of(const BlockView& block, const RayOf<F>& ray, cons
 template <bool Varied>
 inline Root single_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& q) {
   const QueryOf<float> query{q.t0, q.t1, q.any, q.leaving, q.from_surface, q.from_outside};
-  const RootOf<float> root = first_root_of<Varied, float>(block, ray, query, true);
+  const RootOf<float> root = first_root_of<Varied>(block, ray, query);
   return {root.t, root.hit, root.undecided, root.evaluations, root.begins_outside, root.enters_inside};
 }
 

@@ -1,5 +1,5 @@
-// Sixteen rays in one cell, from the ray as a double to where it meets the surface. Part of block_kernels_avx512.cpp:
-// for other sets the compiler takes comparisons of vectors apart, and rays go one by one.
+// A packet of rays in one cell, from the ray as a double to where it meets the surface. Part of
+// block_kernels_avx512.cpp: for other sets the compiler takes comparisons of vectors apart, and rays go one by one.
 //
 // Places and t are those of RayInCube and of BlendTracer's way for one ray, operation by operation.
 
@@ -8,7 +8,7 @@ using V8 = float __attribute__((vector_size(32)));
 using V8d = double __attribute__((vector_size(64)));
 using Mask8 = long long __attribute__((vector_size(64)));
 
-inline constexpr int half_packet = 8;
+inline constexpr int octet = 8;
 
 inline V8d splat8(double s) { return V8d{} + s; }
 inline V8d load8(const double* p) { return *static_cast<const V8d*>(__builtin_assume_aligned(p, 64)); }
@@ -22,6 +22,10 @@ inline V8 first_min(V8 a, V8 b) { return b < a ? b : a; }
 inline V8 first_max(V8 a, V8 b) { return a < b ? b : a; }
 inline V8 narrowed(V8d v) { return __builtin_convertvector(v, V8); }
 inline V8d widened(V8 v) { return __builtin_convertvector(v, V8d); }
+inline Mask8 mask8(std::uint64_t bits) {
+  const Mask8 bit{1, 2, 4, 8, 16, 32, 64, 128};
+  return (bit & static_cast<long long>(bits & 0xff)) != 0;
+}
 inline unsigned bits8(Mask8 mask) { return static_cast<unsigned>(__builtin_ia32_cvtq2mask512(mask)) & 0xffU; }
 
 struct Stretch8 {
@@ -113,98 +117,84 @@ struct Entry8 {
   }
 };
 
-inline Index16 mask_of(unsigned bits) {
-  const Index16 bit{1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
-  return (bit & static_cast<int>(bits)) != 0;
+// Calls visit(first) for each eight lanes, from a multiple of eight on, of which any is in the set.
+template <class Visit>
+inline void for_each_octet(std::uint64_t rays, const Visit& visit) {
+  for (int first = 0; first < packet_size; first += octet)
+    if (rays >> first & 0xff) visit(first);
 }
 
-// What the search needs of the packet, in the coordinates of the block.
-struct Packet {
-  Ray16 ray;
-  V16 t0, t1;
-  unsigned from_surface = 0, from_outside = 0;
-};
-
 // Where the rays are in the cell; returns those that come into it.
-inline unsigned enter_cell(const CellPlace& cell, const PacketView& rays, bool any_root, CellRoots& out) {
-  unsigned entered = 0;
-  for (int first = 0; first < lanes; first += half_packet) {
+inline std::uint64_t enter_cell(const CellPlace& cell, const PacketView& rays, std::uint64_t asked, bool any_root,
+                                CellRoots& out) {
+  std::uint64_t entered = 0;
+  for_each_octet(asked, [&](int first) {
     const Entry8 entry(cell, Ray8(rays, first), any_root);
     store8(entry.stretch.enter, out.enter + first);
     store8(entry.stretch.exit, out.exit + first);
-    entered |= entry.entered << first;
-  }
+    entered |= static_cast<std::uint64_t>(entry.entered) << first;
+  });
   return entered;
 }
 
-inline Packet in_block(const CellPlace& cell, const PacketView& rays, const CellRoots& at) {
-  alignas(64) float t0[lanes], t1[lanes], origin[3][lanes], direction[3][lanes];
-  Packet packet;
-  for (int first = 0; first < lanes; first += half_packet) {
+// The rays in the coordinates of the block.
+inline void enter_block(const CellPlace& cell, const PacketView& rays, std::uint64_t asked, const CellRoots& at,
+                        BlockRays& out) {
+  std::uint64_t from_surface = 0, from_outside = 0;
+  for_each_octet(asked, [&](int first) {
     const Ray8 ray(rays, first);
     const Rays8InCube block(ray, cell.block_center, cell.block_half);
     const V8d enter = load8(at.enter + first);
-    store8(block.to_local(enter), t0 + first);
-    store8(block.to_local(load8(at.exit + first)), t1 + first);
+    store8(block.to_local(enter), out.from + first);
+    store8(block.to_local(load8(at.exit + first)), out.to + first);
     for (int k = 0; k < 3; ++k) {
-      store8(block.origin[k], origin[k] + first);
-      store8(block.direction[k], direction[k] + first);
+      store8(block.origin[k], out.origin[k] + first);
+      store8(block.direction[k], out.direction[k] + first);
     }
-    packet.from_surface |= bits8(enter <= ray.t_min) << first;
-    packet.from_outside |= bits8(enter >= load8(at.outside_from + first)) << first;
-  }
-  packet.t0 = load(t0);
-  packet.t1 = load(t1);
-  for (int k = 0; k < 3; ++k) {
-    packet.ray.origin[k] = load(origin[k]);
-    packet.ray.direction[k] = load(direction[k]);
-  }
-  return packet;
+    from_surface |= static_cast<std::uint64_t>(bits8(enter <= ray.t_min)) << first;
+    from_outside |= static_cast<std::uint64_t>(bits8(enter >= load8(at.outside_from + first))) << first;
+  });
+  out.from_surface = from_surface & asked;
+  out.begins_outside = from_outside & asked;
 }
 
 // The roots as places on the rays.
-inline void leave_cell(const CellPlace& cell, const PacketView& rays, const RootOf<V16>& root, bool any_root,
-                       CellRoots& out) {
-  alignas(64) float t[lanes], undecided[lanes];
-  __builtin_memcpy(t, &root.t, sizeof t);
-  __builtin_memcpy(undecided, &root.undecided, sizeof undecided);
-  unsigned in_time = 0;
-  for (int first = 0; first < lanes; first += half_packet) {
+inline void leave_block(const CellPlace& cell, const PacketView& rays, std::uint64_t asked, const BlockRays& roots,
+                        bool any_root, CellRoots& out) {
+  std::uint64_t in_time = 0;
+  for_each_octet(asked, [&](int first) {
     const Ray8 ray(rays, first);
     const Rays8InCube block(ray, cell.block_center, cell.block_half);
     const V8d exit = load8(out.exit + first), enter = load8(out.enter + first);
-    V8d at = first_max(block.to_world(load8(t + first)), ray.t_min);
+    V8d at = first_max(block.to_world(load8(roots.t + first)), ray.t_min);
     if (any_root) at = first_min(at, exit);
     store8(at, out.t + first);
-    store8(block.to_world(load8(undecided + first)), out.undecided + first);
-    in_time |= bits8(at <= ray.t_max) << first;
+    store8(block.to_world(load8(roots.undecided + first)), out.undecided + first);
+    in_time |= static_cast<std::uint64_t>(bits8(at <= ray.t_max)) << first;
     // Where the ray begins in this part, it begins outside.
     const V8d from = load8(out.outside_from + first), here = enter <= ray.t_min ? ray.t_min : exit;
-    const Mask8 outside = __builtin_convertvector(
-        *reinterpret_cast<const HalfIndex*>(reinterpret_cast<const char*>(&root.begins_outside) + 4 * first), Mask8);
-    store8(outside ? first_min(from, here) : from, out.outside_from + first);
-  }
-  out.hit = out.met & in_time;
+    store8(mask8(roots.begins_outside >> first) ? first_min(from, here) : from, out.outside_from + first);
+  });
+  __builtin_memcpy(out.evaluations, roots.evaluations, sizeof out.evaluations);
+  out.met = roots.hit;
+  out.hit = roots.hit & in_time;
+  out.begins_outside = roots.begins_outside;
+  out.enters_inside = roots.enters_inside;
 }
 
-void roots_between(const BlockView& block, const CellPlace& cell, const PacketView& rays, unsigned asked, bool any_root,
-                   PacketMemory& memory, CellRoots& out) {
+void roots_between(const BlockView& block, const CellPlace& cell, const PacketView& rays, std::uint64_t asked,
+                   bool any_root, PacketMemory& memory, CellRoots& out) {
   out.entered = asked;
   out.met = out.hit = out.begins_outside = out.enters_inside = 0;
   if (asked == 0) return;
-  Packet packet = in_block(cell, rays, out);
-  packet.ray.memory = &memory;
-  const QueryOf<V16> query{
-      packet.t0, packet.t1, any_root, false, mask_of(packet.from_surface), mask_of(packet.from_outside)};
-  const RootOf<V16> root = first_root_of<false, V16>(block, packet.ray, query, mask_of(asked));
-  __builtin_memcpy(out.evaluations, &root.evaluations, sizeof out.evaluations);
-  out.met = lane_bits(root.hit);
-  out.begins_outside = lane_bits(root.begins_outside);
-  out.enters_inside = lane_bits(root.enters_inside);
-  leave_cell(cell, rays, root, any_root, out);
+  BlockSearch search(block, any_root, memory);
+  enter_block(cell, rays, asked, out, search.rays());
+  search.run(asked);
+  leave_block(cell, rays, asked, search.rays(), any_root, out);
 }
 
-void roots_in_cell(const BlockView& block, const CellPlace& cell, const PacketView& rays, unsigned asked, bool any_root,
-                   PacketMemory& memory, CellRoots& out) {
-  roots_between(block, cell, rays, asked & enter_cell(cell, rays, any_root, out), any_root, memory, out);
+void roots_in_cell(const BlockView& block, const CellPlace& cell, const PacketView& rays, std::uint64_t asked,
+                   bool any_root, PacketMemory& memory, CellRoots& out) {
+  const std::uint64_t entered = asked & enter_cell(cell, rays, asked, any_root, out);
+  roots_between(block, cell, rays, entered, any_root, memory, out);
 }

@@ -3,7 +3,7 @@
 // The bits of a block's 8 x 8 x 8 slots, octant by octant as rays come.
 class SlotBits {
  public:
-  explicit SlotBits(const BlockView& block) : block_(block) {}
+  explicit SlotBits(const BlockView& block) : block_(&block) {}
 
   // Of the slot in these layers.
   bool at(const int (&layer)[3], bool active) {
@@ -11,18 +11,16 @@ class SlotBits {
     return bit_of(layer) != 0;
   }
   Index16 at(const Index16 (&layer)[3], Index16 active) {
-    const Index16 octant = octant_of(layer);
-    for (int k = 0; known_ != all_known && k < 8; ++k)
-      if (!(known_ >> k & 1) && any(active & (octant == k))) need(k);
+    const Index16 octant = octant_of(layer), known = Index16{} + static_cast<int>(known_);
+    const Index16 unknown = active & ((known >> octant & 1) == 0);
+    for (unsigned left = lane_bits(unknown); left != 0; left &= left - 1) need(octant[__builtin_ctz(left)]);
     return bit_of(layer) != 0;
   }
 
  private:
-  static constexpr unsigned all_known = 0xff;
-
   void need(int octant) {
     if (known_ >> octant & 1) return;
-    const std::uint64_t slots = block_.surface(octant);
+    const std::uint64_t slots = block_->surface(octant);
     words_[2 * octant] = static_cast<int>(static_cast<unsigned>(slots));
     words_[2 * octant + 1] = static_cast<int>(static_cast<unsigned>(slots >> 32));
     known_ |= 1U << octant;
@@ -37,7 +35,7 @@ class SlotBits {
     return picked(words_, 2 * octant_of(layer) + (slot >> 5)) >> (slot & 31) & 1;
   }
 
-  const BlockView& block_;
+  const BlockView* block_;
   unsigned known_ = 0;              // a bit for each octant
   alignas(64) int words_[16] = {};  // two for each octant
 };

@@ -24,8 +24,8 @@ struct Islands {
 
   explicit Islands(const RayOf<F>& ray) {
     if constexpr (is_packet) {
-      static_assert(sizeof(Island[most]) <= PacketMemory::bytes);
-      stack = reinterpret_cast<Island*>(ray.memory->data);
+      static_assert(sizeof(Island[most]) <= PacketMemory::of_search);
+      stack = reinterpret_cast<Island*>(ray.memory->search);
     }
   }
 
@@ -78,6 +78,18 @@ struct Search {
 
   Search(Marcher<Varied, F>& m, F t0, F t1)
       : march(m), front(t0), end(t1), exact(!(m.level.f_error > 0) && !(m.level.g_error > 0)), islands(m.ray) {}
+
+  // Others begin in these lanes.
+  void restart(Mask lanes_of, F t0, F t1) {
+    assign(lanes_of, front, t0);
+    assign(lanes_of, end, t1);
+    have_last = have_last & !lanes_of;
+    have_inside = have_inside & !lanes_of;
+    undecided = select(lanes_of, all_lanes<F>(infinity), undecided);
+    doubt.begin = select(lanes_of, all_lanes<F>(infinity), doubt.begin);
+    doubt.end = select(lanes_of, all_lanes<F>(-infinity), doubt.end);
+    islands.count = select(lanes_of, IntOf<F>{}, islands.count);
+  }
 
   Mask missed() const { return (front >= end) & !have_inside; }
   Mask bracketed() const { return have_inside & !islands.some(); }
@@ -229,62 +241,66 @@ struct Search {
 
   // The next place after `samples` of them, p the last. Newton's guesses are quick unless the field stays near 1 over a
   // long way; halving the first gap always ends, because each half ends at a sample.
-  F next(const Sample& p, F before, int samples) const {
+  F next(const Sample& p, F before, IntOf<F> samples) const {
     constexpr int patience = 48;
-    if (samples >= patience) return 0.5F * (front + gap_end());
     F place = guess();
     // Where the field all but touches 1 certificates are short: look from the other side of the touch.
     const Mask touching = (p.margin > 0.0F) & (front - before < shortest_gap * p.distance);
     if (any(touching)) place = select(touching, front + min_of(0.5F * (gap_end() - front), 1e-3F * p.distance), place);
-    return place;
+    return select(samples >= patience, 0.5F * (front + gap_end()), place);
   }
 };
 
-// The coarse level: it finds where the surface may be, at a fraction of the cost. Of `near` rays the front is certified
-// and `guess` is close to the root.
-template <class F>
+// The coarse level: it finds where the surface may be, at a fraction of the cost.
+template <bool Varied, class F = float>
 struct Approach {
-  MaskOf<F> surely_inside{}, near{};
-  F guess{};
-};
-
-template <bool Varied, class F>
-inline Approach<F> approach(Search<Varied, F>& s, bool any_root, MaskOf<F> open) {
   using Mask = MaskOf<F>;
-  constexpr int most_samples = 200;
-  Approach<F> out;
-  F next = 0.5F * (s.front + s.end);
-  for (int i = 0; i < most_samples && any(open); ++i) {
+
+  Search<Varied, F>& s;
+  bool any_root;
+  F next;                        // where to look
+  Mask surely_inside{}, near{};  // of rays that have ended; others are outside all along
+  F guess{};                     // of near ones, which are certified up to the front: close to the root
+
+  Approach(Search<Varied, F>& search, bool any) : s(search), any_root(any), next(0.5F * (s.front + s.end)) {}
+
+  // Another sample of each of these rays. Returns those that have not ended.
+  Mask step(Mask open) {
+    constexpr int most_samples = 200;
     const SampleOf<Varied, F> p = s.march.sample(next, open);
     const F before = s.front;
     s.record(open, p);
     open = open & !s.missed();
-    if (any_root) {
-      const Mask inside = open & (p.residual <= 0.0F);
-      if (any(inside)) {
-        const Mask surely = inside & s.march.inside_at(p, F{});
-        out.surely_inside = out.surely_inside | surely;
-        open = open & !surely;
-      }
-    }
-    if (!any(open)) break;
+    if (any_root) open = open & !find_inside(p, open);
+    if (!any(open)) return open;
     next = select(open, s.guess(), next);
     const F gap = s.gap_end() - s.front;
     const Mask found =
         s.bracketed() & ((gap < 0.1F * p.distance) | (s.have_last & (next - s.front < 0.05F * p.distance)));
     const Mask stuck =
         (p.residual > 0.0F) & (s.front - before < 1e-3F * p.distance) & (p.t - before < 1e-2F * p.distance);
-    const Mask enough = open & (found | (gap < 1e-3F * p.distance) | stuck);
-    out.near = out.near | enough;
-    open = open & !enough;
+    const Mask last = s.march.evaluations >= most_samples;
+    const Mask enough = open & (found | (gap < 1e-3F * p.distance) | stuck | last);
+    if (any(enough)) come_near(enough);
+    return open & !enough;
   }
-  out.near = out.near | open;
-  if (!any(out.near)) return out;
+
+ private:
+  Mask find_inside(const SampleOf<Varied, F>& p, Mask open) {
+    const Mask inside = open & (p.residual <= 0.0F);
+    if (!any(inside)) return inside;
+    const Mask surely = inside & s.march.inside_at(p, F{});
+    surely_inside = surely_inside | surely;
+    return surely;
+  }
+
   // A little before the root, so that one fine certificate can reach it.
-  const F root = s.estimated_root(), distance = select(s.have_inside, s.inside.distance, s.last.distance);
-  out.guess = select(root < infinity, root - 3e-4F * distance, next);
-  return out;
-}
+  void come_near(Mask rays) {
+    near = near | rays;
+    const F root = s.estimated_root(), distance = select(s.have_inside, s.inside.distance, s.last.distance);
+    guess = select(rays, select(root < infinity, root - 3e-4F * distance, next), guess);
+  }
+};
 
 template <class F>
 struct RootOf {
@@ -296,30 +312,40 @@ struct RootOf {
 };
 
 // The fine level: it decides.
-template <bool Varied, class F>
-inline RootOf<F> decide(Search<Varied, F>& s, F guess, bool any_root, MaskOf<F> rays) {
+template <bool Varied, class F = float>
+struct Decision {
   using Mask = MaskOf<F>;
-  RootOf<F> root;
-  Mask open = rays;
-  for (int samples = 1; any(open); ++samples) {
+
+  Search<Varied, F>& s;
+  bool any_root;
+  F guess;  // where to look
+  IntOf<F> samples{};
+  Mask hit{};  // of rays that have ended, at t
+  F t{};
+
+  Decision(Search<Varied, F>& search, F first_guess, bool any) : s(search), any_root(any), guess(first_guess) {}
+
+  // Another sample of each of these rays. Returns those that have not ended.
+  Mask step(Mask open) {
     const SampleOf<Varied, F> p = s.march.sample(guess, open);
+    count(open, samples);
     const F before = s.front;
     s.record(open, p);
     open = open & !s.missed();
-    if (!any(open)) break;
-    Mask hit = s.pinned(open, root.t);
+    if (!any(open)) return open;
+    Mask met = s.pinned(open, t);
     if (any_root) {
-      const Mask met = open & !hit & s.have_inside;
-      root.t = select(met, s.inside.t, root.t);
-      hit = hit | met;
+      const Mask inside = open & !met & s.have_inside;
+      t = select(inside, s.inside.t, t);
+      met = met | inside;
     }
-    const Mask given_up = open & !hit & s.too_short(p);
-    if (any(given_up)) hit = hit | s.give_up_gap(given_up, root.t);
-    root.hit = root.hit | hit;
-    open = open & !hit & !s.missed();
-    if (!any(open)) break;
-    guess = s.next(p, before, samples);
+    const Mask given_up = open & !met & s.too_short(p);
+    if (any(given_up)) met = met | s.give_up_gap(given_up, t);
+    hit = hit | met;
+    open = open & !met & !s.missed();
+    if (any(open)) guess = s.next(p, before, samples);
+    return open;
   }
-  root.undecided = select(rays, s.undecided_before(select(root.hit, root.t, all_lanes<F>(infinity))), root.undecided);
-  return root;
-}
+
+  F undecided() const { return s.undecided_before(select(hit, t, all_lanes<F>(infinity))); }
+};

@@ -11,7 +11,7 @@
 
 namespace marrow {
 
-/// Camera samples of neighbouring pixels: as many rays as hits and samplers, at most RayPacket::size.
+/// Camera samples of neighbouring pixels: as many rays as hits and samplers.
 struct CameraSamples {
   std::span<const Ray> rays;
   std::span<const std::optional<SurfaceHit>> first;  ///< the rays' nearest surfaces

@@ -1,6 +1,7 @@
 // Path tracing with next-event estimation.
 #include "renderer/transport/integrators/path_tracer.h"
 
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -96,7 +97,7 @@ bool survives(Rgb& throughput, Sampler& sampler) {
   return true;
 }
 
-// A path from the camera on, surface by surface. At each of them light is asked for, which whoever walks it answers.
+// A path from the camera on, surface by surface. What it asks on its way, whoever walks it answers.
 class Path {
  public:
   Path(const RenderScene& scene, int max_depth, Strategy strategy, const Ray& camera_ray,
@@ -110,9 +111,16 @@ class Path {
   /// Preconditions of these, which take turns: not ended.
   std::optional<AskedLight> ask() { return asked_light(scene_, *at_, sampler_, strategy_); }
   void receive(const Rgb& light) { radiance_ += throughput_ * light; }
-  void go_on();
+  /// Where to; nothing when it ends here.
+  std::optional<Ray> go_on();
+  /// At the end of that ray.
+  void arrive(const std::optional<SurfaceHit>& hit) {
+    const Receiver start = at_->receiver;
+    arrive(next_, hit, {&start, next_pdf_});
+  }
 
  private:
+  std::optional<BsdfSample> drawn_direction();
   void arrive(const Ray&, const std::optional<SurfaceHit>&, const Departure&);
   void end() { at_.reset(); }
 
@@ -124,6 +132,8 @@ class Path {
   Rgb radiance_;
   Rgb throughput_{1};
   std::optional<Vertex> at_;  // nothing when the path has ended
+  Ray next_;                  // where it goes on, drawn with this density
+  double next_pdf_ = 0;
 };
 
 // Light that the ray has met comes first; the surface that it has met may be its last.
@@ -137,57 +147,84 @@ void Path::arrive(const Ray& ray, const std::optional<SurfaceHit>& hit, const De
 }
 
 // In a direction that the surface draws.
-void Path::go_on() {
-  if (depth_ == max_depth_ && !scene_.lights.can_be_met() && !scene_.has_emission) return end();
-  const auto drawn = at_->bsdf.sample(at_->wo, sampler_.next_3d());
-  if (!drawn) return end();
-  throughput_ *= drawn->weight;
-  if (depth_ > surfaces_before_roulette && !survives(throughput_, sampler_)) return end();
-  const Receiver start = at_->receiver;
-  const Ray ray{.origin = start.position, .direction = UnitVec3::unchecked(at_->frame.to_world(drawn->wi))};
-
-  // A last ray matters only for light that it meets itself
-  const Departure from{&start, drawn->pdf};
-  if (depth_ == max_depth_ && !scene_.has_emission && is_black(met_light(scene_, ray, infinity, from, strategy_)))
-    return end();
-  arrive(ray, scene_.surfaces->first_hit(ray), from);
-}
-
-// The rest of a path, with shadow rays of its own.
-Rgb walked(Path& path, const Surfaces& surfaces) {
-  while (!path.ended()) {
-    const auto asked = path.ask();
-    path.receive(asked && !surfaces.occluded(asked->shadow_ray) ? asked->radiance : Rgb{});
-    path.go_on();
+std::optional<Ray> Path::go_on() {
+  const auto drawn = drawn_direction();
+  if (!drawn) {
+    end();
+    return {};
   }
-  return path.radiance();
+  next_pdf_ = drawn->pdf;
+  next_ = Ray{.origin = at_->receiver.position, .direction = UnitVec3::unchecked(at_->frame.to_world(drawn->wi))};
+  // A last ray matters only for light that it meets itself
+  if (depth_ == max_depth_ && !scene_.has_emission &&
+      is_black(met_light(scene_, next_, infinity, {&at_->receiver, next_pdf_}, strategy_))) {
+    end();
+    return {};
+  }
+  return next_;
 }
 
-// At their first surfaces the paths ask for light together: neighbours go to the same light.
-void light_first_surfaces(std::span<Path> paths, const Surfaces& surfaces) {
+// Nothing when the path ends here.
+std::optional<BsdfSample> Path::drawn_direction() {
+  if (depth_ == max_depth_ && !scene_.lights.can_be_met() && !scene_.has_emission) return {};
+  const auto drawn = at_->bsdf.sample(at_->wo, sampler_.next_3d());
+  if (!drawn) return {};
+  throughput_ *= drawn->weight;
+  if (depth_ > surfaces_before_roulette && !survives(throughput_, sampler_)) return {};
+  return drawn;
+}
+
+// Neighbours go to the same light, and leave from the same surfaces: whatever paths ask, they ask together.
+void ask_for_light(std::span<Path* const> paths, const Surfaces& surfaces) {
   struct Waiting {
     Path* path;
     Rgb light;
   };
   std::vector<Waiting> waiting;
   std::vector<Ray> shadow_rays;
-  for (Path& path : paths) {
-    if (path.ended()) continue;
-    const auto asked = path.ask();
+  for (Path* path : paths) {
+    const auto asked = path->ask();
     if (asked) shadow_rays.push_back(asked->shadow_ray);
-    if (asked) waiting.push_back({&path, asked->radiance});
-    else path.receive({});
+    if (asked) waiting.push_back({path, asked->radiance});
+    else path->receive({});
   }
-  const unsigned hidden = surfaces.which_occluded(shadow_rays);
-  for (std::size_t i = 0; i < waiting.size(); ++i) waiting[i].path->receive(hidden >> i & 1 ? Rgb{} : waiting[i].light);
+  std::vector<std::uint8_t> hidden(shadow_rays.size());
+  surfaces.occluded(shadow_rays, hidden);
+  for (std::size_t i = 0; i < waiting.size(); ++i) waiting[i].path->receive(hidden[i] != 0 ? Rgb{} : waiting[i].light);
+}
+
+void go_on(std::span<Path* const> paths, const Surfaces& surfaces) {
+  std::vector<Path*> under_way;
+  std::vector<Ray> rays;
+  for (Path* path : paths)
+    if (const auto ray = path->go_on()) {
+      under_way.push_back(path);
+      rays.push_back(*ray);
+    }
+  std::vector<std::optional<SurfaceHit>> hits(rays.size());
+  surfaces.first_hits(rays, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i) under_way[i]->arrive(hits[i]);
+}
+
+// To the ends of all paths.
+void walk(std::span<Path> paths, const Surfaces& surfaces) {
+  std::vector<Path*> open;
+  for (Path& path : paths) open.push_back(&path);
+  for (;;) {
+    std::erase_if(open, [](const Path* path) { return path->ended(); });
+    if (open.empty()) return;
+    ask_for_light(open, surfaces);
+    go_on(open, surfaces);
+  }
 }
 
 }  // namespace
 
 Rgb PathTracer::radiance(const Ray& camera_ray, const std::optional<SurfaceHit>& first, const RenderScene& scene,
                          Sampler& sampler) const {
-  Path path(scene, max_depth_, strategy_, camera_ray, first, sampler);
-  return walked(path, *scene.surfaces);
+  Rgb radiance;
+  radiances({std::span(&camera_ray, 1), std::span(&first, 1), std::span(&sampler, 1)}, scene, std::span(&radiance, 1));
+  return radiance;
 }
 
 void PathTracer::radiances(const CameraSamples& of, const RenderScene& scene, std::span<Rgb> radiances) const {
@@ -195,11 +232,8 @@ void PathTracer::radiances(const CameraSamples& of, const RenderScene& scene, st
   paths.reserve(of.rays.size());
   for (std::size_t i = 0; i < of.rays.size(); ++i)
     paths.emplace_back(scene, max_depth_, strategy_, of.rays[i], of.first[i], of.samplers[i]);
-  light_first_surfaces(paths, *scene.surfaces);
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (!paths[i].ended()) paths[i].go_on();
-    radiances[i] = walked(paths[i], *scene.surfaces);
-  }
+  walk(paths, *scene.surfaces);
+  for (std::size_t i = 0; i < paths.size(); ++i) radiances[i] = paths[i].radiance();
 }
 
 }  // namespace marrow

@@ -16,7 +16,7 @@ class PathTracer final : public Integrator {
   /// max_depth: surfaces along a path that may scatter; 1 is direct light only.
   explicit PathTracer(int max_depth, Strategy strategy = Strategy::Both) : max_depth_(max_depth), strategy_(strategy) {}
   Rgb radiance(const Ray&, const std::optional<SurfaceHit>& first, const RenderScene&, Sampler&) const override;
-  /// The shadow rays of the first surfaces go together.
+  /// The rays of all paths go together, surface by surface.
   void radiances(const CameraSamples&, const RenderScene&, std::span<Rgb>) const override;
 
  private:
