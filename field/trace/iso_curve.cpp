@@ -66,7 +66,7 @@ IsoCurve::IsoCurve(const Correction& correction, double least, double most) : le
   rows_ = tables(correction, least, step, count + 1, entry_count);
   const auto between = tables(correction, least + step / 2, step, count, probe_count);
   for (std::size_t k = 0; k < count; ++k)
-    for (int i = 0; i < probe_count; ++i) {
+    for (int i = 0; i < between[k].size(); ++i) {
       const IsoTable::Point p = between[k].point(i);
       const double off = 2 * Place(rows_, (static_cast<double>(k) + 0.5) / steps).nominal(p.x, p.y);
       if (!(off > 0) || !std::isfinite(off)) continue;  // beyond the end of a table V_lower says no

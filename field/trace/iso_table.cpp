@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "field/blend/correction.h"
 #include "field/math/elementary.h"
@@ -12,6 +13,9 @@ namespace marrow {
 namespace {
 
 constexpr int probes_per_step = 3;
+
+// Else there would be more than twice as many entries.
+constexpr double fewest_steps_to_kink = 2;
 
 // The smallest v in [low, high] with inside(v), by bisection with a value: `excess` is C - 1 along v, rising.
 template <class Excess>
@@ -62,6 +66,42 @@ struct TurnedLine {
   }
 };
 
+// The u where the curve comes to the border of a branch of the operator, to a rounding: `in_branch` tells for a u. The
+// border is met once or not at all.
+template <class InBranch>
+std::optional<double> border(const InBranch& in_branch, double begin, double end) {
+  constexpr int looks = 64;
+  const bool first = in_branch(begin);
+  double low = begin, high = begin;
+  for (int i = 1; i <= looks && in_branch(high) == first; ++i) {
+    low = high;
+    high = begin + (end - begin) * i / looks;
+  }
+  if (in_branch(high) == first) return {};
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (in_branch(middle) == first ? low : high) = middle;
+  }
+  return high;
+}
+
+struct Steps {
+  double length;
+  int entry_count;
+};
+
+// As long as `entry_count` says, or a little shorter, so that the last one may reach beyond the end and an entry stands
+// where the curve has its kink, at the border of the cavity branch.
+template <class InBranch>
+Steps steps_over(double begin, double end, int entry_count, const InBranch& in_branch) {
+  const Steps even{(end - begin) / (entry_count - 1), entry_count};
+  const auto kink = border(in_branch, begin, end);
+  const double before = kink ? std::ceil((*kink - begin) / even.length) : 0;
+  if (!(before >= fewest_steps_to_kink)) return even;
+  const double length = (*kink - begin) / before;
+  return {length, 1 + static_cast<int>(std::ceil((end - begin) / length))};
+}
+
 }  // namespace
 
 double critical_field_of(const Correction& correction) {
@@ -76,7 +116,7 @@ IsoTable::IsoTable(const Correction& correction, double alpha, int entry_count)
   cos_ = sum ? 0 : cos(theta);
   const auto excess = [&](double x, double y) { return correction.value(x, y) - 1; };
 
-  const auto curve = [&](double u) {
+  const auto root = [&](double u) {
     const TurnedLine line{u, sin_, cos_};
     const double v0 = line.first_v();
     return rising_root([&](double v) { return excess(line.x(v), line.y(v)); }, v0, v0 + 4);
@@ -88,7 +128,17 @@ IsoTable::IsoTable(const Correction& correction, double alpha, int entry_count)
   u_begin_ = -critical_ * cos_;
   // With theta = 0, u = -x ends at 0; the table goes a little further, so that x = 0 lies inside it.
   const double u_end = sin_ > 0 ? std::min(y_end, largest_y) * sin_ : 0.01;
-  step_ = (u_end - u_begin_) / (entry_count - 1);
+  const Steps steps = steps_over(u_begin_, u_end, entry_count, [&](double u) {
+    const TurnedLine line{u, sin_, cos_};
+    const double v = root(u);
+    return correction.in_cavity_branch(line.x(v), line.y(v));
+  });
+  step_ = steps.length;
+  entry_count = steps.entry_count;
+  // Behind the axis x = 0, in the last step, it goes on straight: no field comes there.
+  const bool ends_at_axis = sin_ > 0 && y_end < largest_y;
+  const double at_end = root(u_end), end_slope = (at_end - root(u_end - step_)) / step_;
+  const auto curve = [&](double u) { return ends_at_axis && u > u_end ? at_end + end_slope * (u - u_end) : root(u); };
 
   const auto count = static_cast<std::size_t>(entry_count);
   std::vector<double> value(count), below(count, 0), above(count, 0);

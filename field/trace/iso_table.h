@@ -19,7 +19,9 @@ double critical_field_of(const Correction&);
 
 class IsoTable {
  public:
-  /// Needs a finite critical field.
+  /// Needs a finite critical field. At least `entry_count` entries: where the curve comes to the border of the cavity
+  /// branch it has a kink, and steps are so much shorter that an entry stands there. A line across the kink would be
+  /// off by up to 2e-4, and C by up to 4e-5.
   IsoTable(const Correction&, double alpha, int entry_count = 2048);
 
   /// Piecewise linear over u in [u_begin, u_begin + (size - 1) / inverse_step]; entries as float, sorted by u.

@@ -62,7 +62,7 @@ Outcome run_scene(const Job& job, std::uint64_t number) {
 
 // Not held to 0 yet: rays from the exact surface of limbs that nearly touch (1 of 1.6 10^5 rays was lost, and said so),
 // and single hits that are off by more than 4 ulp though sums in float would tell them (1 of 78,108).
-// What 10^6 rays showed, and room for chance: one phantom (nearly touching, 2.4e-5 off).
+// Room for chance: of 8 10^6 rays with one angle none was a phantom.
 // An angle that varies is less exact: see README.
 bool is_held(std::size_t kind, const Verdict& v, const Parity& p) {
   if (v.missed + v.wrong_side + v.unlike > 0 || p.odd + p.odd_lost > 0 || v.lost > v.rays / 10'000) return false;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "renderer/geometry/embree_surfaces.h"
+#include "tests/stress/way_proof.h"
 #include "tests/trace/oracle.h"
 #include "tests/trace/random_scene.h"
 
@@ -43,6 +44,7 @@ class StressScene {
   const BlendField& blend() const { return blend_; }
   const EmbreeSurfaces& surfaces() const { return *surfaces_; }
   const Oracle& oracle() const { return *oracle_; }
+  const WayProof& proof() const { return *proof_; }
   double size() const { return size_; }  ///< half of the scene's extent, about
   const Vec3d& center() const { return center_; }
   const Vec3d& focus() const { return focus_; }  ///< where it is hardest
@@ -61,6 +63,7 @@ class StressScene {
   Vec3d center_{}, focus_{};
   std::unique_ptr<EmbreeSurfaces> surfaces_;
   std::unique_ptr<Oracle> oracle_;
+  std::unique_ptr<WayProof> proof_;
   Box3 cells_;
 };
 

@@ -65,10 +65,9 @@ void judge_limits(const StressScene& scene, const Ray& ray, const SurfaceHit& hi
 }
 
 // The hit itself: on the exact surface, in its place on the ray, with a start for further rays that is outside.
-void judge_hit(const StressScene& scene, const Ray& ray, const SurfaceHit& hit, const char* family, bool from_afar,
-               Verdict& v) {
+void judge_hit(const StressScene& scene, const Ray& ray, const SurfaceHit& hit, const BlendSample& exact,
+               const char* family, bool from_afar, Verdict& v) {
   const Vec3d p = ray.at(hit.t);
-  const BlendSample exact = evaluate(scene.blend(), p);
   const double slope = length(exact.corrected_gradient), distance = scene.oracle().skeleton_distance(p);
   if (distance < point_size(scene)) {
     ++v.points;
@@ -100,12 +99,20 @@ void judge_hit(const StressScene& scene, const Ray& ray, const SurfaceHit& hit, 
   v.largest_ulps = std::max(v.largest_ulps, ulps);
 }
 
+// Most ways are, and a few places prove it: the oracle would find no root there, or none that is deep enough to count.
+bool is_proved_free(const StressScene& scene, const Ray& way, const SurfaceHit* hit) {
+  if (!hit || !(hit->t > way.t_max)) return scene.proof().is_outside(way, way.t_min, way.t_max, nullptr);
+  const Place there = scene.proof().place(way, hit->t);
+  return scene.proof().is_outside(way, way.t_min, way.t_max, &there);
+}
+
 // Nothing worth mentioning may be inside before `end`.
-void judge_free_way(const StressScene& scene, const Ray& ray, double end, bool certified, const char* family,
-                    Verdict& v) {
+void judge_free_way(const StressScene& scene, const Ray& ray, double end, const SurfaceHit* hit, bool certified,
+                    const char* family, Verdict& v) {
   Ray before = near_cells(scene, ray);
   before.t_max = std::min(before.t_max, end);
   if (!(before.t_min < before.t_max)) return;
+  if (is_proved_free(scene, before, hit)) return;
   const auto root = scene.oracle().first_root(before);
   if (!root) return;
   const double radius = scene.oracle().skeleton_distance(ray.at(*root));
@@ -130,14 +137,14 @@ void judge_free_way(const StressScene& scene, const Ray& ray, double end, bool c
 }
 
 // A ray that begins inside meets the surface where it leaves: nothing worth mentioning may be outside before.
-bool leaves_from_inside(const StressScene& scene, const Ray& ray, double t) {
-  return scene.oracle().value(ray.at(ray.t_min)) >= 1 &&
-         dot(evaluate(scene.blend(), ray.at(t)).corrected_gradient, ray.direction) < 0;
+bool leaves_from_inside(const StressScene& scene, const Ray& ray, const BlendSample& at_hit) {
+  return dot(at_hit.corrected_gradient, ray.direction) < 0 && scene.oracle().value(ray.at(ray.t_min)) >= 1;
 }
 
 void judge_way_inside(const StressScene& scene, const Ray& ray, double end, bool certified, const char* family,
                       Verdict& v) {
   if (!(ray.t_min < end)) return;
+  if (scene.proof().is_inside(ray, ray.t_min, end)) return;
   const double deficit = scene.oracle().largest_deficit(ray, ray.t_min, end);
   if (deficit < scene.grazing_excess()) return;
   ++(certified ? v.missed : v.lost);
@@ -200,15 +207,15 @@ void judge(const StressScene& scene, const Ray& ray, const char* family, bool fr
   ++v.rays;
   v.evaluations += record.evaluations;
   v.uncertified += !record.certified;
-  if (hit) {
-    ++v.hits;
-    judge_hit(scene, ray, *hit, family, from_afar, v);
-  }
+  if (!hit)
+    return judge_free_way(scene, ray, std::numeric_limits<double>::infinity(), nullptr, record.certified, family, v);
+  ++v.hits;
+  const BlendSample exact = evaluate(scene.blend(), ray.at(hit->t));
+  judge_hit(scene, ray, *hit, exact, family, from_afar, v);
   // Just before the hit the steps would creep up to it; what is nearer to it than this is part of the hit.
-  const double end =
-      hit ? hit->t - 1e-4 * scene.oracle().skeleton_distance(ray.at(hit->t)) : std::numeric_limits<double>::infinity();
-  if (hit && leaves_from_inside(scene, ray, hit->t)) judge_way_inside(scene, ray, end, record.certified, family, v);
-  else judge_free_way(scene, ray, end, record.certified, family, v);
+  const double end = hit->t - 1e-4 * scene.oracle().skeleton_distance(ray.at(hit->t));
+  if (leaves_from_inside(scene, ray, exact)) judge_way_inside(scene, ray, end, record.certified, family, v);
+  else judge_free_way(scene, ray, end, &*hit, record.certified, family, v);
 }
 
 void Parity::add(const Parity& b) {

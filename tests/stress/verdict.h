@@ -31,7 +31,8 @@ struct Verdict {
   /// A hit off the surface by more than allowed_displacement, where the field is so flat that it is nearly 1 all the
   /// same.
   std::uint64_t displaced = 0;
-  /// A stretch inside was skipped, but the field stays below 1 + StressScene::grazing_excess() on it.
+  /// A stretch inside was skipped, but the field stays below 1 + StressScene::grazing_excess() on it. Where it stays
+  /// below half of that excess a proof of it mostly comes first, and nothing is counted.
   std::uint64_t grazing = 0;
   /// A hit at the point of a cone of radius 0.
   std::uint64_t points = 0;
@@ -56,9 +57,9 @@ inline constexpr double far_off = 5e-5;
 /// Allowed distance of a hit from the exact surface, over the distance to the skeleton.
 inline constexpr double allowed_displacement = 2e-5;
 
-/// Traces the ray and judges the answer. Every stretch before the hit, or the whole ray, is proved to be outside by
-/// steps that are certified from exact values (Oracle), except stretches shorter than 1e-6 of the distance to the
-/// skeleton.
+/// Traces the ray and judges the answer. Every stretch before the hit, or the whole ray, is proved to be outside from
+/// exact values (WayProof, or else the certified steps of Oracle), except stretches shorter than 1e-6 of the distance
+/// to the skeleton.
 /// `from_afar`: the ray begins a camera's distance away, so that ulps of t mean something.
 void judge(const StressScene&, const Ray&, const char* family, bool from_afar, Verdict&);
 

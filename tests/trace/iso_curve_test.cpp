@@ -133,6 +133,47 @@ TEST(IsoCurve, LowerTableIsBelowTheCurve) {
   std::cout << "  widest gap of the table below the curve: " << widest << '\n';
 }
 
+// The x with C(x, y) = 1, for alpha >= 0.
+double field_on_curve(const Correction& c, double y) {
+  double low = 0, high = 10;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (low + high);
+    (c.value(middle, y) < 1 ? low : high) = middle;
+  }
+  return high;
+}
+
+// Hits lie where the table says. Straight lines are off where the curve begins steeply (G = 0) and where it ends (f =
+// 0), and would be across the border of the cavity branch, where it has a kink.
+TEST(IsoCurve, TableIsOnTheCurveAtItsKinkToo) {
+  constexpr int steep_entries = 16, last_entries = 16, places = 8;
+  int borders = 0;
+  double largest = 0;
+  for (const auto& [s, c, iso] : cases()) {
+    if (!s.cavity || s.projection != Projection::Paper || s.alpha < 0 || s.alpha > 1.56) continue;
+    const IsoTable table(c, s.alpha);
+    const auto in_branch = [&](int i) { return c.in_cavity_branch(table.point(i).x, table.point(i).y); };
+    bool before = in_branch(0);
+    for (int i = steep_entries; i + last_entries < table.size(); ++i) {
+      const bool after = in_branch(i + 1), at_border = before != after || after != in_branch(i - 1);
+      borders += before != after;
+      before = after;
+      if (!at_border && i % 64 > 0) continue;
+      const double first = table.point(i).y, second = table.point(i + 1).y;
+      if (second > 2.5 * (s.degree - 1)) break;
+      for (int k = 0; k <= places; ++k) {
+        const double y = first + (second - first) * k / places, x = field_on_curve(c, y);
+        const double off = table.nominal(x, y);
+        const double error = c.value(x + off * sin(s.alpha), y + off * cos(s.alpha)) - 1;
+        largest = std::max(largest, std::fabs(error));
+        ASSERT_NEAR(error, 0, 5e-6) << name_of(s) << " entry " << i << ", at the border " << at_border;
+      }
+    }
+  }
+  std::cout << "  tables with a border: " << borders << "; C is off by up to " << largest << '\n';
+  EXPECT_GT(borders, 10);
+}
+
 // For a range of angles: what the border of the cavity branch, a kink, may be off is below the rounding of sums.
 TEST(IsoCurve, HoldsForAllAnglesOfARange) {
   Random random(34);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -48,6 +49,44 @@ TraceOptions large_cells() {
   TraceOptions options;
   options.spacing = std::make_shared<const RaySpacing>(few);
   return options;
+}
+
+// Where the operator changes its branch the curve that the tracer reads has a kink.
+TEST(OddRays, HitsAtTheBorderOfTheCavityBranchLieOnTheSurface) {
+  Random random(303);
+  double largest = 0;
+  int borders = 0;
+  for (const int n : {3, 4, 5}) {
+    BlendField field;
+    field.degree = n;
+    field.alpha = contact_alpha(n) + 2e-4;
+    field.segments.add({{-1.3, 0, -0.4}, {1.3, 0, -0.4}, 0.4, 0.4}, {});
+    field.segments.add({{-1.3, -0.25, 0.4}, {1.3, 0.25, 0.4}, 0.4, 0.4}, {});
+    const Oracle oracle(field);
+    const Correction c = correction_of(field);
+    const auto tracer = std::move(*BlendTracer::make(field, {}));
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3d eye = random_direction(random) * 3.0;
+      const auto in_branch = [&](const Vec3d& target) -> std::optional<bool> {
+        const Ray ray{eye, normalize(target - eye)};
+        const auto t = first_hit(*tracer, ray);
+        if (!t) return {};
+        const BlendSample s = evaluate(field, ray.at(*t));
+        largest = std::max(largest, oracle.displacement(ray.at(*t)));
+        return c.in_cavity_branch(s.sum, s.si_norm);
+      };
+      Vec3d a = random.vector(0.3), b = random.vector(0.3);
+      if (in_branch(a) != true || in_branch(b) != false) continue;
+      for (int halving = 0; halving < 14; ++halving) {
+        const Vec3d middle = (a + b) * 0.5;
+        (in_branch(middle) == true ? a : b) = middle;
+      }
+      borders += in_branch(b) == false;
+    }
+  }
+  std::cout << "  " << borders << " places of the border; largest displacement " << largest << '\n';
+  EXPECT_GT(borders, 60);
+  EXPECT_LT(largest, 5e-6);
 }
 
 // High degrees make fields beside a skeleton larger than floats can hold.

@@ -100,6 +100,10 @@ Oracle::Local Oracle::local(const Vec3d& p, const Vec3d& direction) const {
           alpha_at(blend_, p).value};
 }
 
+double Oracle::corrected(const Local& l) const {
+  return blend_.alpha_varies() ? correction_with(l.alpha).value(l.f, length(l.g)) : correction_.value(l.f, length(l.g));
+}
+
 // Both bounds are convex in the step, so its ends suffice.
 bool Oracle::outside(const Local& l, double step) const {
   const double q = step / l.distance;
@@ -130,12 +134,13 @@ double Oracle::certified_step(const Local& l, double limit, double& share) const
 std::optional<double> Oracle::first_root(const Ray& ray) const {
   double t = ray.t_min, before = t, share = 0.35;
   for (;;) {
-    if (value(ray.at(t)) >= 1) break;
+    const Local here = local(ray.at(t), ray.direction);
+    if (corrected(here) >= 1) break;
     if (t >= ray.t_max) return {};
     before = t;
     // Towards the point of a cone steps shrink without end: none is below what doubles can tell.
     const double least = 1e-14 * (t + max_component(abs(ray.origin)));
-    t += std::max(least, certified_step(local(ray.at(t), ray.direction), ray.t_max - t, share));
+    t += std::max(least, certified_step(here, ray.t_max - t, share));
     if (t > ray.t_max) t = ray.t_max;
   }
   for (int i = 0; i < 40 && t > before; ++i) {

@@ -32,6 +32,7 @@ class Oracle {
  private:
   struct Local;
   Local local(const Vec3d& p, const Vec3d& direction) const;
+  double corrected(const Local&) const;
   bool outside(const Local&, double step) const;
   double certified_step(const Local&, double limit, double& share) const;
 
