@@ -52,6 +52,17 @@ struct FieldLevel {
   const StrandLevel* strands = nullptr;  ///< the strands, whose near sources are those of the level, in their order
 };
 
+/// The share of the range of angles in a part of a block, where directions give it: a polynomial in (x - center) /
+/// half, its coefficients in the order of far_field.h. It is the share that is traced; see share_patch.h.
+struct alignas(64) SharePatch {
+  static constexpr int degree = 4, coefficients = 35;
+  float coefficient[coefficients] = {};
+  float center[3] = {0, 0, 0}, inverse_half = 1;
+  int layers_log2 = 2;  ///< the part is so many of the eight layers of slots wide
+  float error = 0;      ///< what it may be off from what it was fitted to: an estimate
+};
+inline constexpr int floats_per_patch = sizeof(SharePatch) / sizeof(float);
+
 /// What the kernels read of a block. The coarse level finds where the surface can be; the fine level is the field that
 /// is rendered.
 struct BlockView {
@@ -66,10 +77,14 @@ struct BlockView {
   IsoCurve::View iso;
   const IsoCurve::View* rows = nullptr;  ///< where alpha varies: tables for equal steps of its share
   int row_count = 0;
+  AngleTables tables;  ///< the same
+  /// Where directions give alpha, else null: the part of the block that holds a slot, by its layers, 0 to 7.
+  const SharePatch& (*find_patch)(const void* owner, const int (&layer)[3]) = nullptr;
 
   std::uint64_t surface(int octant) const { return find_surface(owner, octant); }
   const FieldLevel& coarse() const { return make_coarse(owner); }
   const FieldLevel& fine() const { return make_fine(owner); }
+  const SharePatch& patch(const int (&layer)[3]) const { return find_patch(owner, layer); }
 };
 
 struct LocalRay {
@@ -99,7 +114,7 @@ struct TileLayers {
 
 /// What the search of a packet needs beside the stack, which may be small: one for each thread.
 struct PacketMemory {
-  static constexpr std::size_t bytes = 80 << 10;
+  static constexpr std::size_t bytes = 96 << 10;
   alignas(64) unsigned char data[bytes];
 };
 
@@ -134,8 +149,13 @@ struct PointField {
   float hessian[6];                ///< of the potential: derivative of G; xx yy zz xy xz yz
   float nearest;                   ///< distance to the nearest source
   float second, third;             ///< M2 and m M3 of tracing.md 3.1, for bounds of f and G nearby
-  float share, share_gradient[3];  ///< of the range of angles, where alpha varies; else 0
+  float share, share_gradient[3];  ///< of the range of angles, where each skeleton has one; else 0
   float share_bend;                ///< |share - its linear part| <= share_bend h^2 on short steps h
+};
+
+/// The share of the range of angles as the strands of a fine level tell it.
+struct StrandShare {
+  float share, gradient[3];
 };
 
 inline constexpr int most_far_moments = 200;  ///< see MomentTable: 200 of degree 6, 80 of degree 4
@@ -251,6 +271,7 @@ struct BlockKernels {
   void (*far_split)(const float* pieces, int groups, const FarQuery&, unsigned short* near, FarSums&);
   /// Of the eight octants, from groups of pieces: curves, then points.
   void (*octant_bounds)(const float* pieces, int curve_groups, int point_groups, int degree, OctantBounds*);
+  void (*strand_share)(const FieldLevel&, int degree, const float point[3], StrandShare&);
   void (*strand_samples)(const StrandQuery&, StrandSamples&);
   /// Adds a strand, (f, sum f_s u_s), to tensor_floats sums.
   void (*add_strand)(const float sums[4], float* tensor);

@@ -20,7 +20,7 @@ constexpr double largest_step = 0.03;
 constexpr int entry_count = 256, probe_count = 256;
 
 // Tables for `count` angles, the first and the last at a given place in steps of `step`.
-std::vector<IsoTable> tables(const Correction& c, double first, double step, std::size_t count, int entries) {
+std::vector<IsoTable> tables_for(const Correction& c, double first, double step, std::size_t count, int entries) {
   std::vector<std::optional<IsoTable>> made(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     const double alpha = first + step * static_cast<double>(i);
@@ -63,8 +63,8 @@ IsoCurve::IsoCurve(const Correction& correction, double alpha) : least_(alpha), 
 IsoCurve::IsoCurve(const Correction& correction, double least, double most) : least_(least), most_(most) {
   const double steps = std::max(8.0, std::ceil((most - least) / largest_step)), step = (most - least) / steps;
   const auto count = static_cast<std::size_t>(steps);
-  rows_ = tables(correction, least, step, count + 1, entry_count);
-  const auto between = tables(correction, least + step / 2, step, count, probe_count);
+  rows_ = tables_for(correction, least, step, count + 1, entry_count);
+  const auto between = tables_for(correction, least + step / 2, step, count, probe_count);
   for (std::size_t k = 0; k < count; ++k)
     for (int i = 0; i < probe_count; ++i) {
       const IsoTable::Point p = between[k].point(i);
@@ -72,7 +72,27 @@ IsoCurve::IsoCurve(const Correction& correction, double least, double most) : le
       if (!(off > 0) || !std::isfinite(off)) continue;  // beyond the end of a table V_lower says no
       for (std::size_t row = k > 0 ? k - 1 : 0; row <= std::min(k + 2, count); ++row) rows_[row].lower_around(p, off);
     }
-  for (const IsoTable& row : rows_) views_.push_back(row.view());
+  for (const IsoTable& row : rows_) {
+    const View& view = views_.emplace_back(row.view());
+    values_.insert(values_.end(), view.value, view.value + view.size);
+    lower_.insert(lower_.end(), view.lower, view.lower + view.size);
+    u_begin_.push_back(view.u_begin);
+    inverse_step_.push_back(view.inverse_step);
+    sin_theta_.push_back(view.sin_theta);
+    cos_theta_.push_back(view.cos_theta);
+  }
+}
+
+AngleTables IsoCurve::tables() const {
+  if (values_.empty()) return {};
+  return {.value = values_.data(),
+          .lower = lower_.data(),
+          .u_begin = u_begin_.data(),
+          .inverse_step = inverse_step_.data(),
+          .sin_theta = sin_theta_.data(),
+          .cos_theta = cos_theta_.data(),
+          .size = views_.front().size,
+          .count = static_cast<int>(views_.size())};
 }
 
 bool IsoCurve::outside(double x_low, double x_high, double y_high) const {

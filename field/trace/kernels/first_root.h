@@ -8,17 +8,37 @@ struct QueryOf {
   MaskOf<F> from_surface, from_outside;
 };
 
+// What gives the angle on a run, where it comes from.
+template <Angle Rule, class F>
+struct AngleOf {
+  AngleSource<Rule, F> source;
+};
+template <class F>
+struct AngleOf<Angle::Patched, F> {
+  ShareOnRun<F> run;
+  AngleSource<Angle::Patched, F> source{run};
+  AngleOf(Patches<F>& patches, const RayOf<F>& ray, F t) : run(patches, ray, t) {}
+  AngleOf(const AngleOf&) = delete;
+  AngleOf& operator=(const AngleOf&) = delete;
+};
+
+template <Angle Rule, class F>
+inline AngleOf<Rule, F> angle_from(Patches<F>& patches, const RayOf<F>& ray, F t) {
+  if constexpr (Rule == Angle::Patched) return {patches, ray, t};
+  else return {};
+}
+
 // The coarse level finds where to look, the fine level decides.
-template <bool Varied, class F>
-inline RootOf<F> root_in(const BlockView& block, const RayOf<F>& ray, const Run<F>& run, bool any_root,
-                         MaskOf<F> rays) {
+template <Angle Rule, class F>
+inline RootOf<F> root_in(const BlockView& block, const RayOf<F>& ray, const Run<F>& run,
+                         const AngleSource<Rule, F>& angle, bool any_root, MaskOf<F> rays) {
   RootOf<F> root;
-  Marcher<Varied, F> march(block, block.coarse(), ray);
-  Search<Varied, F> search(march, run.begin, run.end);
+  Marcher<Rule, F> march(block, block.coarse(), ray, angle);
+  Search<Rule, F> search(march, run.begin, run.end);
   const Approach<F> approached = approach(search, any_root, rays);
   if (any(approached.near)) {
-    Marcher<Varied, F> fine(block, block.fine(), ray);
-    Search<Varied, F> close(fine, search.front, run.end);
+    Marcher<Rule, F> fine(block, block.fine(), ray, angle);
+    Search<Rule, F> close(fine, search.front, run.end);
     root = decide(close, min_of(max_of(approached.guess, search.front), run.end), any_root, approached.near);
     root.evaluations = fine.evaluations;
     root.begins_outside = close.have_last;
@@ -31,11 +51,12 @@ inline RootOf<F> root_in(const BlockView& block, const RayOf<F>& ray, const Run<
 }
 
 // Where a ray leaves that is inside at t0.
-template <bool Varied>
-inline RootOf<float> exit_in(const BlockView& block, const LocalRay& ray, const Run<float>& run, bool any_root) {
-  Marcher<Varied> march(block, block.fine(), ray);
+template <Angle Rule>
+inline RootOf<float> exit_in(const BlockView& block, const LocalRay& ray, const Run<float>& run,
+                             const AngleSource<Rule, float>& angle, bool any_root) {
+  Marcher<Rule> march(block, block.fine(), ray, angle);
   march.exits = true;
-  Search<Varied> search(march, run.begin, run.end);
+  Search<Rule> search(march, run.begin, run.end);
   search.record(true, march.sample(run.begin, true));
   RootOf<float> root;
   if (!search.missed()) root = decide(search, search.guess(), any_root, true);
@@ -47,21 +68,23 @@ inline RootOf<float> exit_in(const BlockView& block, const LocalRay& ray, const 
 inline constexpr float clearly_inside = 2e-5F;
 
 // Whether the ray is inside at t, by the coarse level where that can tell.
-template <bool Varied>
-inline bool is_inside(const BlockView& block, const LocalRay& ray, float t, int& evaluations) {
-  Marcher<Varied> rough(block, block.coarse(), ray);
-  const SampleOf<Varied> p = rough.sample(t, true);
+template <Angle Rule>
+inline bool is_inside(const BlockView& block, const LocalRay& ray, float t, const AngleSource<Rule, float>& angle,
+                      int& evaluations) {
+  Marcher<Rule> rough(block, block.coarse(), ray, angle);
+  const SampleOf<Rule> p = rough.sample(t, true);
   ++evaluations;
   if (p.residual > 0) return false;
   if (p.nominal < -clearly_inside && rough.inside_at(p, 0)) return true;
-  Marcher<Varied> march(block, block.fine(), ray);
+  Marcher<Rule> march(block, block.fine(), ray, angle);
   ++evaluations;
   return march.sample(t, true).nominal < -clearly_inside;
 }
 
-inline void find_sides(bool, const BlockView& block, const LocalRay& ray, float t, bool varied, RootOf<float>& root) {
-  root.enters_inside =
-      varied ? is_inside<true>(block, ray, t, root.evaluations) : is_inside<false>(block, ray, t, root.evaluations);
+template <Angle Rule>
+inline void find_sides(bool, const BlockView& block, const LocalRay& ray, float t, Patches<float>& patches,
+                       RootOf<float>& root) {
+  root.enters_inside = is_inside<Rule>(block, ray, t, angle_from<Rule>(patches, ray, t).source, root.evaluations);
 }
 
 inline LocalRay ray_of_lane(const Ray16& rays, int lane) {
@@ -73,24 +96,39 @@ inline LocalRay ray_of_lane(const Ray16& rays, int lane) {
   return ray;
 }
 
-inline void find_sides(Index16 asked, const BlockView& block, const Ray16& rays, V16 t, bool, RootOf<V16>& root) {
+template <Angle Rule>
+inline void find_sides(Index16 asked, const BlockView& block, const Ray16& rays, V16 t, Patches<V16>& patches,
+                       RootOf<V16>& root) {
   for (unsigned left = lane_bits(asked); left != 0; left &= left - 1) {
     const int lane = __builtin_ctz(left);
-    int evaluations = 0;
-    root.enters_inside[lane] = is_inside<false>(block, ray_of_lane(rays, lane), t[lane], evaluations) ? -1 : 0;
-    root.evaluations[lane] += evaluations;
+    RootOf<float> one;
+    Patches<float> patch;
+    patch.patch = patches.patch[lane];
+    find_sides<Rule>(true, block, ray_of_lane(rays, lane), t[lane], patch, one);
+    root.enters_inside[lane] = one.enters_inside ? -1 : 0;
+    root.evaluations[lane] += one.evaluations;
   }
 }
 
 // A ray that begins at a surface is too near for the coarse level: one fine certificate leads away. Returns the rays
 // that are to go on from `front`.
-template <bool Varied, class F>
+template <Angle Rule, class F>
 inline MaskOf<F> leave_surface(const BlockView& block, const RayOf<F>& ray, const QueryOf<F>& query, MaskOf<F> rays,
                                RootOf<F>& root, F& front) {
   using Mask = MaskOf<F>;
-  Marcher<Varied, F> march(block, block.fine(), ray);
-  Search<Varied, F> start(march, query.t0, query.t1);
-  const SampleOf<Varied, F> first = march.sample(query.t0, rays);
+  Patches<F> patches;
+  F end = query.t1;
+  if constexpr (Rule == Angle::Patched) {
+    const IntOf<F> layer[3] = {layer_of(ray.origin[0] + ray.direction[0] * query.t0),
+                               layer_of(ray.origin[1] + ray.direction[1] * query.t0),
+                               layer_of(ray.origin[2] + ray.direction[2] * query.t0)};
+    patches.find(block, rays, layer);
+    end = min_of(end, max_of(query.t0, end_of_patch(patches, ray)));
+  }
+  const AngleOf<Rule, F> angle = angle_from<Rule>(patches, ray, query.t0);
+  Marcher<Rule, F> march(block, block.fine(), ray, angle.source);
+  Search<Rule, F> start(march, query.t0, end);
+  const SampleOf<Rule, F> first = march.sample(query.t0, rays);
   root.evaluations = march.evaluations;
   const Mask inside = rays & (first.nominal < -clearly_inside), outside = rays & !inside;
   root.hit = inside;
@@ -99,29 +137,30 @@ inline MaskOf<F> leave_surface(const BlockView& block, const RayOf<F>& ray, cons
   root.begins_outside = root.begins_outside | outside;
   start.record(outside, first);
   assign(outside, front, start.front);
-  return outside & !start.missed();
+  return outside & !(start.front >= query.t1);
 }
 
-template <bool Varied, class F>
+template <Angle Rule, class F>
 inline RootOf<F> first_root_of(const BlockView& block, const RayOf<F>& ray, const QueryOf<F>& query, MaskOf<F> open) {
   using Mask = MaskOf<F>;
   RootOf<F> root;
   root.begins_outside = open & query.from_outside;
   F front = query.t0;
   if (const Mask starts = open & query.from_surface; !query.leaving && any(starts)) {
-    const Mask go_on = leave_surface<Varied>(block, ray, query, starts, root, front);
+    const Mask go_on = leave_surface<Rule>(block, ray, query, starts, root, front);
     open = open & (go_on | !starts);
   }
-  Runs<F> runs(block, ray, front, query.t1);
+  Runs<Rule, F> runs(block, ray, front, query.t1);
   Run<F> run;
   while (any(open)) {
     open = open & runs.next(open, run);
     if (!any(open)) break;
+    const AngleOf<Rule, F> angle = angle_from<Rule>(runs.patches, ray, run.begin);
     RootOf<F> found;
     if constexpr (sizeof(F) == sizeof(float))
-      found = query.leaving ? exit_in<Varied>(block, ray, run, query.any)
-                            : root_in<Varied, F>(block, ray, run, query.any, open);
-    else found = root_in<Varied, F>(block, ray, run, query.any, open);
+      found = query.leaving ? exit_in<Rule>(block, ray, run, angle.source, query.any)
+                            : root_in<Rule, F>(block, ray, run, angle.source, query.any, open);
+    else found = root_in<Rule, F>(block, ray, run, angle.source, query.any, open);
     const Mask hit = open & found.hit;
     root.hit = root.hit | hit;
     root.t = select(hit, found.t, root.t);
@@ -130,19 +169,21 @@ inline RootOf<F> first_root_of(const BlockView& block, const RayOf<F>& ray, cons
     root.begins_outside = root.begins_outside | (open & found.begins_outside);
     // Any root will do: a ray that begins inside meets one where it leaves.
     const Mask unknown = hit & !root.begins_outside;
-    if (!query.leaving && !query.any && any(unknown)) find_sides(unknown, block, ray, run.begin, Varied, root);
+    if (!query.leaving && !query.any && any(unknown))
+      find_sides<Rule>(unknown, block, ray, run.begin, runs.patches, root);
     open = open & !hit;
   }
   return root;
 }
 
-template <bool Varied>
+template <Angle Rule>
 inline Root single_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& q) {
   const QueryOf<float> query{q.t0, q.t1, q.any, q.leaving, q.from_surface, q.from_outside};
-  const RootOf<float> root = first_root_of<Varied, float>(block, ray, query, true);
+  const RootOf<float> root = first_root_of<Rule, float>(block, ray, query, true);
   return {root.t, root.hit, root.undecided, root.evaluations, root.begins_outside, root.enters_inside};
 }
 
 Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
-  return block.row_count > 1 ? single_root<true>(block, ray, query) : single_root<false>(block, ray, query);
+  if (block.find_patch != nullptr) return single_root<Angle::Patched>(block, ray, query);
+  return block.row_count > 1 ? single_root<Angle::Mean>(block, ray, query) : single_root<Angle::One>(block, ray, query);
 }

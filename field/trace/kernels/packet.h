@@ -196,7 +196,9 @@ void roots_between(const BlockView& block, const CellPlace& cell, const PacketVi
   packet.ray.memory = &memory;
   const QueryOf<V16> query{
       packet.t0, packet.t1, any_root, false, mask_of(packet.from_surface), mask_of(packet.from_outside)};
-  const RootOf<V16> root = first_root_of<false, V16>(block, packet.ray, query, mask_of(asked));
+  const RootOf<V16> root = block.find_patch != nullptr
+                               ? first_root_of<Angle::Patched, V16>(block, packet.ray, query, mask_of(asked))
+                               : first_root_of<Angle::One, V16>(block, packet.ray, query, mask_of(asked));
   __builtin_memcpy(out.evaluations, &root.evaluations, sizeof out.evaluations);
   out.met = lane_bits(root.hit);
   out.begins_outside = lane_bits(root.begins_outside);

@@ -7,9 +7,9 @@ struct Doubt {
 };
 
 // Certified stretches beyond the front, nearest on top.
-template <bool Varied, class F>
+template <Angle Rule, class F>
 struct Islands {
-  using Sample = SampleOf<Varied, F>;
+  using Sample = SampleOf<Rule, F>;
   using Mask = MaskOf<F>;
 
   // Bisection halves the first gap before it adds an island: down to shortest_gap that is some 20 on top of the others.
@@ -61,22 +61,22 @@ struct Islands {
 
 // `front` is the end of the stretch from t0 that is certified outside; `inside` is the nearest sample known not to be
 // outside.
-template <bool Varied, class F = float>
+template <Angle Rule, class F = float>
 struct Search {
-  using Sample = SampleOf<Varied, F>;
+  using Sample = SampleOf<Rule, F>;
   using Mask = MaskOf<F>;
 
-  Marcher<Varied, F>& march;
+  Marcher<Rule, F>& march;
   F front, end;
   Mask have_last{}, have_inside{};
   bool exact;                            // the level is the field itself: it tells what is inside
   F undecided = all_lanes<F>(infinity);  // where the first stretch was passed over that could not be decided
   Doubt<F> doubt;                        // the last such stretch, not in `undecided` yet
   Sample last, inside;                   // last: the outside sample whose certificate reaches the front
-  Islands<Varied, F> islands;
+  Islands<Rule, F> islands;
   F nearest_island{};  // where it begins
 
-  Search(Marcher<Varied, F>& m, F t0, F t1)
+  Search(Marcher<Rule, F>& m, F t0, F t1)
       : march(m), front(t0), end(t1), exact(!(m.level.f_error > 0) && !(m.level.g_error > 0)), islands(m.ray) {}
 
   Mask missed() const { return (front >= end) & !have_inside; }
@@ -248,14 +248,14 @@ struct Approach {
   F guess{};
 };
 
-template <bool Varied, class F>
-inline Approach<F> approach(Search<Varied, F>& s, bool any_root, MaskOf<F> open) {
+template <Angle Rule, class F>
+inline Approach<F> approach(Search<Rule, F>& s, bool any_root, MaskOf<F> open) {
   using Mask = MaskOf<F>;
   constexpr int most_samples = 200;
   Approach<F> out;
   F next = 0.5F * (s.front + s.end);
   for (int i = 0; i < most_samples && any(open); ++i) {
-    const SampleOf<Varied, F> p = s.march.sample(next, open);
+    const SampleOf<Rule, F> p = s.march.sample(next, open);
     const F before = s.front;
     s.record(open, p);
     open = open & !s.missed();
@@ -296,13 +296,13 @@ struct RootOf {
 };
 
 // The fine level: it decides.
-template <bool Varied, class F>
-inline RootOf<F> decide(Search<Varied, F>& s, F guess, bool any_root, MaskOf<F> rays) {
+template <Angle Rule, class F>
+inline RootOf<F> decide(Search<Rule, F>& s, F guess, bool any_root, MaskOf<F> rays) {
   using Mask = MaskOf<F>;
   RootOf<F> root;
   Mask open = rays;
   for (int samples = 1; any(open); ++samples) {
-    const SampleOf<Varied, F> p = s.march.sample(guess, open);
+    const SampleOf<Rule, F> p = s.march.sample(guess, open);
     const F before = s.front;
     s.record(open, p);
     open = open & !s.missed();
