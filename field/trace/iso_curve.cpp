@@ -74,19 +74,23 @@ IsoCurve::IsoCurve(const Correction& correction, double least, double most) : le
     }
   for (const IsoTable& row : rows_) {
     const View& view = views_.emplace_back(row.view());
-    values_.insert(values_.end(), view.value, view.value + view.size);
-    lower_.insert(lower_.end(), view.lower, view.lower + view.size);
+    for (int i = 0; i < view.size; ++i) {
+      const int next = std::min(i + 1, view.size - 1);
+      steps_.insert(steps_.end(), {view.value[i], view.lower[i], view.value[next], view.lower[next]});
+    }
     u_begin_.push_back(view.u_begin);
     inverse_step_.push_back(view.inverse_step);
     sin_theta_.push_back(view.sin_theta);
     cos_theta_.push_back(view.cos_theta);
   }
+  constexpr std::size_t entries = 16;
+  for (auto* of_rows : {&u_begin_, &inverse_step_, &sin_theta_, &cos_theta_})
+    of_rows->resize(std::max(of_rows->size(), entries));
 }
 
 AngleTables IsoCurve::tables() const {
-  if (values_.empty()) return {};
-  return {.value = values_.data(),
-          .lower = lower_.data(),
+  if (steps_.empty()) return {};
+  return {.steps = steps_.data(),
           .u_begin = u_begin_.data(),
           .inverse_step = inverse_step_.data(),
           .sin_theta = sin_theta_.data(),

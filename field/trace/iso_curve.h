@@ -14,7 +14,8 @@ namespace marrow {
 /// The tables of a range of angles, for equal steps of their share, one after the other and of one size, with what
 /// IsoTable::View tells of each.
 struct AngleTables {
-  const float *value = nullptr, *lower = nullptr;
+  const float* steps = nullptr;  ///< value, lower, and both of the next entry
+  /// Of each table; there are at least 16 numbers.
   const float *u_begin = nullptr, *inverse_step = nullptr, *sin_theta = nullptr, *cos_theta = nullptr;
   int size = 0, count = 0;
 };
@@ -65,7 +66,7 @@ class IsoCurve {
   double least_, most_;
   std::vector<IsoTable> rows_;
   std::vector<View> views_;
-  std::vector<float> values_, lower_, u_begin_, inverse_step_, sin_theta_, cos_theta_;  // of tables()
+  std::vector<float> steps_, u_begin_, inverse_step_, sin_theta_, cos_theta_;  // of tables()
 };
 
 }  // namespace marrow

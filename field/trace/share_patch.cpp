@@ -30,15 +30,29 @@ std::array<Monomial, monomial_count> make_monomials() {
 }
 const std::array<Monomial, monomial_count> monomials = make_monomials();
 
-double power(double x, int n) { return n == 0 ? 1 : x * power(x, n - 1); }
+// Of all monomials at a place.
+class Monomials {
+ public:
+  explicit Monomials(const Vec3d& z) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      powers_[k][0] = 1;
+      for (std::size_t i = 1; i <= SharePatch::degree; ++i) powers_[k][i] = powers_[k][i - 1] * z[k];
+    }
+  }
+  double value(const Monomial& m) const { return power(0, m) * power(1, m) * power(2, m); }
+  double slope(const Monomial& m, std::size_t axis) const {
+    const int n = m.power[axis];
+    if (n == 0) return 0;
+    const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
+    return n * powers_[axis][static_cast<std::size_t>(n) - 1] * power(a, m) * power(b, m);
+  }
 
-// Of a monomial; `axis` 3: its value, else its slope along that axis.
-double value_of(const Monomial& m, const Vec3d& z, std::size_t axis) {
-  double v = 1;
-  for (std::size_t k = 0; k < 3; ++k)
-    v *= k != axis ? power(z[k], m.power[k]) : m.power[k] == 0 ? 0 : m.power[k] * power(z[k], m.power[k] - 1);
-  return v;
-}
+ private:
+  double power(std::size_t axis, const Monomial& m) const {
+    return powers_[axis][static_cast<std::size_t>(m.power[axis])];
+  }
+  double powers_[3][SharePatch::degree + 1];
+};
 
 Vec3d place(std::size_t k) {
   return {static_cast<double>(strand_place[k][0]), static_cast<double>(strand_place[k][1]),
@@ -51,10 +65,11 @@ struct Fit {
   std::array<Row, data_count> basis{}, coefficients{};  // of the monomials; of each datum
 
   Fit() {
-    for (std::size_t i = 0; i < data_count; ++i)
+    for (std::size_t i = 0; i < data_count; ++i) {
+      const Monomials at(place(i / 4));
       for (std::size_t m = 0; m < monomial_count; ++m)
-        basis[i][m] =
-            (i % 4 == 0 ? 1 : slope_weight) * value_of(monomials[m], place(i / 4), i % 4 == 0 ? 3 : i % 4 - 1);
+        basis[i][m] = i % 4 == 0 ? at.value(monomials[m]) : slope_weight * at.slope(monomials[m], i % 4 - 1);
+    }
     solve();
   }
 
@@ -147,16 +162,20 @@ ShareAt share_at(const SharePatch& patch, const Vec3d& at) {
   const double scale = static_cast<double>(patch.inverse_half);
   Vec3d z;
   for (std::size_t k = 0; k < 3; ++k) z[k] = (at[k] - static_cast<double>(patch.center[k])) * scale;
+  const Monomials here(z);
   ShareAt out;
+  double bend = 0;
   for (std::size_t m = 0; m < monomial_count; ++m) {
     const auto c = static_cast<double>(patch.coefficient[m]);
-    out.share += c * value_of(monomials[m], z, 3);
-    for (std::size_t k = 0; k < 3; ++k) out.gradient[k] += c * value_of(monomials[m], z, k) * scale;
+    out.share += c * here.value(monomials[m]);
+    for (std::size_t k = 0; k < 3; ++k) out.gradient[k] += c * here.slope(monomials[m], k);
     const int* p = monomials[m].power;
     const double d = p[0] + p[1] + p[2];
     // Half of the second derivative along a unit vector, of a monomial of degree d where |z| <= 1 along each axis.
-    out.bend += 0.5 * std::fabs(c) * d * d * scale * scale;
+    bend += 0.5 * std::fabs(c) * d * d;
   }
+  out.gradient = out.gradient * scale;
+  out.bend = bend * scale * scale;
   out.error = static_cast<double>(patch.error);
   if (out.share >= 0 && out.share <= 1) return out;
   out.share = std::clamp(out.share, 0.0, 1.0);

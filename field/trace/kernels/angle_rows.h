@@ -1,23 +1,62 @@
 // Reading the tables of a range of angles where rays go in lanes (iso_curve.h). Part of block_kernels_<set>.cpp.
 
+// What is known of each table.
+inline float of_row(const float* numbers, int, int row) { return numbers[row]; }
+inline V16 of_row(const float* numbers, int count, Index16 row) {
+  if (count > lanes) return gather(numbers, row);
+  V16 all;
+  __builtin_memcpy(&all, numbers, sizeof all);
+  return __builtin_shuffle(all, row);
+}
+
+// From one entry of a table to the next.
+template <class F>
+struct TableStep {
+  F value, lower, next_value, next_lower;
+};
+inline TableStep<float> step_at(const float* steps, int entry) {
+  const float* s = steps + 4 * static_cast<long>(entry);
+  return {s[0], s[1], s[2], s[3]};
+}
+// Four numbers at a time for each lane: gathers take a machine many times as long.
+inline TableStep<V16> step_at(const float* steps, Index16 entry) {
+  V16 part[4];  // lanes 4 k + i in quarter k of part i
+  for (int i = 0; i < 4; ++i) {
+    V4 quarter[4];
+    for (int k = 0; k < 4; ++k) quarter[k] = load4(steps + 4 * static_cast<long>(entry[4 * k + i]));
+    __builtin_memcpy(&part[i], quarter, sizeof part[i]);
+  }
+  const auto low = [](V16 a, V16 b) {
+    return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
+  };
+  const auto high = [](V16 a, V16 b) {
+    return __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31);
+  };
+  const V16 a = low(part[0], part[2]), b = low(part[1], part[3]), c = high(part[0], part[2]),
+            d = high(part[1], part[3]);
+  return {low(a, b), high(a, b), low(c, d), high(c, d)};
+}
+
 // A place in one of the tables, which may be another one in each lane.
 template <class F>
 struct RowPlace {
-  F sine, cosine, v, at, fraction;
-  IntOf<F> entry;
+  F sine, cosine, v, inverse_step, at, fraction;
+  TableStep<F> step;
 
   RowPlace(const AngleTables& tables, IntOf<F> row, F x, F y)
-      : sine(gather(tables.sin_theta, row)), cosine(gather(tables.cos_theta, row)), v(x * sine + y * cosine) {
-    at = (y * sine - x * cosine - gather(tables.u_begin, row)) * gather(tables.inverse_step, row);
+      : sine(of_row(tables.sin_theta, tables.count, row)),
+        cosine(of_row(tables.cos_theta, tables.count, row)),
+        v(x * sine + y * cosine),
+        inverse_step(of_row(tables.inverse_step, tables.count, row)) {
+    at = (y * sine - x * cosine - of_row(tables.u_begin, tables.count, row)) * inverse_step;
     const F from = max_of(at, 0.0F);
     const IntOf<F> index = whole_part(min_of(from, static_cast<float>(tables.size - 1) - 0.5F));
     fraction = from - to_float(index);
-    entry = row * tables.size + index;
+    step = step_at(tables.steps, row * tables.size + index);
   }
-  F in(const float* table) const {
-    const F low = gather(table, entry);
-    return low + (gather(table + 1, entry) - low) * fraction;
-  }
+  F slope() const { return step.next_value - step.value; }
+  F value() const { return step.value + slope() * fraction; }
+  F lower() const { return step.lower + (step.next_lower - step.lower) * fraction; }
   MaskOf<F> beyond(const AngleTables& tables) const { return at >= static_cast<float>(tables.size - 1); }
 };
 
@@ -56,7 +95,7 @@ struct AngleRows {
     MaskOf<F> beyond{};
     for (int i = 0; i < 4; ++i) {
       const RowPlace<F> p = place(i, x, y);
-      const F value = p.in(tables.value), lower = p.in(tables.lower);
+      const F value = p.value(), lower = p.lower();
       sum += weight[i] * (value - p.v) - abs_of(weight[i]) * (value - lower);
       beyond = beyond | p.beyond(tables);
     }
@@ -67,7 +106,7 @@ struct AngleRows {
     MaskOf<F> beyond{};
     for (int i = 0; i < 4; ++i) {
       const RowPlace<F> p = place(i, x, y);
-      sum += weight[i] * (p.in(tables.value) - p.v);
+      sum += weight[i] * (p.value() - p.v);
       beyond = beyond | p.beyond(tables);
     }
     return select(beyond, all_lanes<F>(-infinity), sum);
@@ -77,7 +116,7 @@ struct AngleRows {
     F sum{};
     for (int i = 0; i < 4; ++i) {
       const RowPlace<F> p = place(i, x, y);
-      sum += weight[i] * (p.in(tables.value) - p.v);
+      sum += weight[i] * (p.value() - p.v);
     }
     return sum < 0.0F;
   }
@@ -90,7 +129,7 @@ inline F margin_of_next_row(const AngleTables& tables, MaskOf<F> upward, F share
   const IntOf<F> below = whole_part(at);
   const IntOf<F> row = select(upward & (to_float(below) < at), below + 1, below);
   const RowPlace<F> p(tables, row, x, y);
-  return select(p.beyond(tables), all_lanes<F>(-infinity), p.in(tables.lower) - p.v);
+  return select(p.beyond(tables), all_lanes<F>(-infinity), p.lower() - p.v);
 }
 
 // Whether f is more than the reference curve has at this |G|: right of it C rises with the angle, left of it it falls

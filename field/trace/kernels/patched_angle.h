@@ -18,9 +18,8 @@ struct PatchedAngle {
     p.curve = p.v = p.x_weight = p.y_weight = p.v_slope = F{};
     for (int i = 0; i < 4; ++i) {
       const RowPlace<F> row = rows.place(i, p.s.f, y);
-      const F w = rows.weight[i], low = gather(block.tables.value, row.entry),
-              step = gather(block.tables.value + 1, row.entry) - low, value = low + step * row.fraction;
-      const F slope = select(row.at > 0.0F, step * gather(block.tables.inverse_step, rows.first + i), F{});
+      const F w = rows.weight[i], value = row.value(),
+              slope = select(row.at > 0.0F, row.slope() * row.inverse_step, F{});
       p.curve += w * value;
       p.v += w * row.v;
       p.x_weight += w * (row.sine + slope * row.cosine);

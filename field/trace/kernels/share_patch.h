@@ -66,13 +66,19 @@ struct Patches<V16> {
   V16 column[floats_per_patch];  // what the patches hold, a ray in each lane
 
   void find(const BlockView& block, Index16 rays, const Index16 (&layer)[3]) {
-    for (unsigned left = lane_bits(rays); left != 0; left &= left - 1) {
-      const int lane = __builtin_ctz(left);
-      const int at[3] = {layer[0][lane], layer[1][lane], layer[2][lane]};
-      patch[lane] = &block.patch(at);
-      shift[lane] = patch[lane]->layers_log2;
+    // Neighbours are mostly in one part.
+    while (any(rays)) {
+      const int first = __builtin_ctz(lane_bits(rays));
+      const int at[3] = {layer[0][first], layer[1][first], layer[2][first]};
+      const SharePatch& found = block.patch(at);
+      const int log2 = found.layers_log2;
+      Index16 here = rays;
+      for (int k = 0; k < 3; ++k) here &= layer[k] >> log2 == at[k] >> log2;
+      for (unsigned left = lane_bits(here); left != 0; left &= left - 1) patch[__builtin_ctz(left)] = &found;
+      for (int k = 0; k < 3; ++k) key[k] = select(here, layer[k] >> log2, key[k]);
+      shift = select(here, Index16{} + log2, shift);
+      rays &= ~here;
     }
-    for (int k = 0; k < 3; ++k) key[k] = select(rays, layer[k] >> shift, key[k]);
   }
   Index16 hold(const Index16 (&layer)[3]) const {
     return (layer[0] >> shift == key[0]) & (layer[1] >> shift == key[1]) & (layer[2] >> shift == key[2]);
