@@ -113,8 +113,8 @@ double IsoCurve::margin(double x, double y, double share) const {
   const Place place(rows_, share);
   double sum = 0;
   for (std::size_t i = 0; i < place.rows.size(); ++i) {
-    const double nominal = place.rows[i].nominal(x, y), lower = place.rows[i].margin(x, y);
-    if (!std::isfinite(nominal) || !std::isfinite(lower)) return -std::numeric_limits<double>::infinity();
+    const auto [nominal, lower] = place.rows[i].margins(x, y);
+    if (!std::isfinite(nominal)) return -std::numeric_limits<double>::infinity();
     sum += place.weight[i] * nominal - std::fabs(place.weight[i]) * (nominal - lower);
   }
   return sum;

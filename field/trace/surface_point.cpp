@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "field/math/elementary.h"
 #include "field/trace/blend_tracer_state.h"
 
 namespace marrow {
@@ -17,15 +18,19 @@ struct HitShare {
   double growth;  // its changes on a step of h distances are at most 1 / (1 - growth h) times what `at` bounds
 };
 
-// IsoCurve::margin() for all shares that alpha may have on a step along the normal, as in march.h.
+// IsoCurve::margin() for all shares that alpha may have on a step along the normal: C is largest at one end of them,
+// see angle_rows.h.
 double margin_of_shares(const HitShare& share, const Vec3d& normal, double step, double nearest, const IsoCurve& iso,
-                        double x, double y) {
+                        double x, double y, int degree) {
+  const bool upward = integer_power(x, degree) > integer_power(y / (degree - 1), degree - 1);
   const double left = 1 - share.growth * step / nearest;
   if (!(left > 0.1) || !(share.at.bend < std::numeric_limits<double>::infinity()))
-    return std::min(iso.margin(x, y, 0), iso.margin(x, y, 1));
+    return iso.margin(x, y, upward ? 1 : 0);
   const double move = dot(share.at.gradient, normal) * step, bend = share.at.bend * step * step;
-  return std::min(iso.margin(x, y, share.at.share + (std::min(0.0, move - bend) - share.error) / left),
-                  iso.margin(x, y, share.at.share + (std::max(0.0, move + bend) + share.error) / left));
+  return iso.margin(
+      x, y,
+      share.at.share +
+          (upward ? std::max(0.0, move + bend) + share.error : std::min(0.0, move - bend) - share.error) / left);
 }
 
 HitShare share_of(const Block& block, const Vec3d& place, const PointField& f, int degree) {
@@ -56,7 +61,8 @@ double step_outside(const PointField& f, const HitShare& share, const Vec3d& nor
   // So that rays get away from where rounding leaves doubts, or, where alpha varies, what tables and shares are off by:
   // 7e-5 was met at a kink.
   const double enough = iso.views().size() > 1 ? 1.5e-4 : 2e-5;
-  constexpr double first = 8e-6;  // near a single skeleton a step of s distances lowers C by s (n - 1)
+  // Near a single skeleton a step of s distances lowers C by s (n - 1): shorter ones are not enough.
+  const double first = iso.views().size() > 1 ? 3.2e-5 : 8e-6;
   // Where no rule is certified, beside the point of a cone, the stated error may be infinite and no step would be best.
   constexpr double most_error = 1e-3;
   const double f_error = std::min(fine.f_error, most_error), g_error = std::min(fine.gradient_error, most_error);
@@ -65,8 +71,9 @@ double step_outside(const PointField& f, const HitShare& share, const Vec3d& nor
     const double bend = f.second * n * (n + 1) * step * step;
     const double x = f.f + slope * step + bend + 2 * f_error, x_low = f.f + slope * step - bend - 2 * f_error;
     const double y = length(vec(f.si_gradient) + bent * step) + f.third * (n + 1) * (n + 2) * step * step + 2 * g_error;
-    double margin = iso.views().size() > 1 ? margin_of_shares(share, normal, step, f.nearest, iso, x * raise, y * raise)
-                                           : iso.margin(x * raise, y * raise);
+    double margin = iso.views().size() > 1
+                        ? margin_of_shares(share, normal, step, f.nearest, iso, x * raise, y * raise, degree)
+                        : iso.margin(x * raise, y * raise);
     if (iso.two_sided()) margin = std::min(margin, iso.margin(std::max(0.0, x_low / raise), y * raise));
     if (margin > enough) return step;
     if (margin > largest) {

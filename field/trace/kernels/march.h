@@ -109,9 +109,9 @@ struct Marcher {
   }
 
   // Positive where the field with these sums is below 1: surely, or, around a sample that is not sure, as summed.
-  F margin(const Sample& p, F x, F y) const {
+  F margin(const Sample& p, F x, F y, Mask asked) const {
     F found = margin_at(block.iso, x * p.raise, y * p.raise);
-    const Mask as_summed = !p.sure;
+    const Mask as_summed = asked & !p.sure;
     if (any(as_summed)) found = select(as_summed, nominal_margin_at(block.iso, x, y), found);
     return found;
   }
@@ -143,12 +143,12 @@ struct Marcher {
     return {field, field + powers * a};
   }
 
-  // Whether all of [t, t + h] is on the side of p.
-  Mask stays_until(const Sample& p, F h) const {
+  // Whether all of [t, t + h] is on the side of p, of the rays that are asked for.
+  Mask stays_until(const Sample& p, F h, Mask asked) const {
     if constexpr (sizeof(F) == sizeof(float)) {
       if (exits) return inside_until(p, h);
     }
-    return outside_until(p, h);
+    return outside_until(p, h, asked);
   }
 
   // Whether t + h is on the other side than p.
@@ -181,18 +181,19 @@ struct Marcher {
 
   // Whether the field is below 1 on all of [t, t + h] (h of either sign): B3 and B4 of tracing.md. Both bounds are
   // convex in h, so the ends suffice.
-  Mask outside_until(const Sample& p, F h) const {
+  Mask outside_until(const Sample& p, F h, Mask asked) const {
     const F q = abs_of(h) / p.distance;
-    const Mask near = q < 0.9F;
+    const Mask near = asked & (q < 0.9F);
     if (!any(near)) return near;
     const Bend bend = bend_until(p, h, q);
     const F x_end = p.s.f + p.s.df * h + bend.field;
     const F y_up = max_of(p.y, turned_length(p, h) + bend.gradient + level.g_error);
-    if constexpr (Rule != Angle::One) return near & (angle().margin_within(p, max_of(p.s.f, x_end), y_up, h) > 0.0F);
-    const Mask below = near & (margin(p, max_of(p.s.f, x_end), y_up) > 0.0F);
+    if constexpr (Rule != Angle::One)
+      return near & (angle().margin_within(p, max_of(p.s.f, x_end), y_up, h, near) > 0.0F);
+    const Mask below = near & (margin(p, max_of(p.s.f, x_end), y_up, near) > 0.0F);
     if (!block.iso.two_sided || !any(below)) return below;
     const F x_low = min_of(p.s.f, p.s.f + p.s.df * h - bend.field) * (1 - rounding) - 2 * level.f_error;
-    return below & (margin(p, max_of(0.0F, x_low), y_up) > 0.0F);
+    return below & (margin(p, max_of(0.0F, x_low), y_up, below) > 0.0F);
   }
 
   // Whether the field is above 1 at t + h, by the same bounds and errors from below. For alpha < 0 the curve rises,
@@ -283,7 +284,7 @@ struct Marcher {
     const auto try_step = [&](Mask sensible, F h) {
       sensible = sensible & open;
       if (!any(sensible)) return;
-      const Mask proved = sensible & stays_until(p, sign * h);
+      const Mask proved = sensible & stays_until(p, sign * h, sensible);
       step = select(proved, h, step);
       open = open & !proved;
     };

@@ -32,7 +32,7 @@ struct PatchedAngle {
     p.residual_bend = abs_of(share_weight * p.share.c[2]);
     p.s.f += level.f_error;
     p.sure = !Mask{};
-    p.residual = margin_within(p, p.s.f, p.y, F{});
+    p.residual = margin_within(p, p.s.f, p.y, F{}, !Mask{});
   }
 
   struct Range {
@@ -47,7 +47,7 @@ struct PatchedAngle {
   }
 
   // Marcher::margin(), nominal_margin_at() and nominally_inside() for all shares on [t, t + h].
-  F margin_within(const Sample& p, F x, F y, F h) const {
+  F margin_within(const Sample& p, F x, F y, F h, Mask asked) const {
     constexpr float rounded = 1e-5F;
     const F raised_x = x * p.raise, raised_y = y * p.raise;
     const Mask right = right_of_reference(raised_x, raised_y, block.degree);
@@ -55,7 +55,7 @@ struct PatchedAngle {
     const F worst = select(right, shares.high, shares.low);
     F margin = level.f_error > 0 ? margin_of_next_row(block.tables, right, worst, raised_x, raised_y)
                                  : AngleRows<F>(block.tables, worst).margin(raised_x, raised_y);
-    const Mask as_summed = !p.sure;
+    const Mask as_summed = asked & !p.sure;
     if (any(as_summed)) margin = select(as_summed, nominal_within(p, x, y, h), margin);
     return margin;
   }

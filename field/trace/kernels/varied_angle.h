@@ -33,7 +33,7 @@ struct VariedAngle {
     p.residual_drop = max_of(0, p.nominal - min_of(low, high));
     p.s.f += level.f_error;
     p.sure = true;
-    p.residual = margin_within(p, p.s.f, p.y, 0);
+    p.residual = margin_within(p, p.s.f, p.y, 0, true);
   }
 
   // Else any share that may be may hold.
@@ -94,7 +94,7 @@ struct VariedAngle {
 
   // Marcher::margin(), nominal_margin_at() and nominally_inside() for all shares on [t, t + h]: C is largest, and
   // least, at the ends of a range.
-  float margin_within(const Sample& p, float x, float y, float h) const {
+  float margin_within(const Sample& p, float x, float y, float h, bool) const {
     if (!p.sure) return nominal_within(p, x, y, h);
     x *= p.raise;
     y *= p.raise;
