@@ -18,6 +18,7 @@ namespace marrow {
 inline constexpr int lanes = 16;
 inline constexpr int floats_per_group = 5 * lanes;  ///< x[16] y[16] z[16] share[16] radius[16]
 
+inline constexpr int most_axes = 45;
 inline constexpr int tensor_floats = 48;  ///< 45 components of a tensor of degree 8; sums of f, f^2, f^2 with direction
 inline constexpr int most_strands = 512;  ///< that a block lists
 inline constexpr int quadratic_monomials = 10;  ///< 1 x y z xx yy zz xy xz yz
@@ -153,10 +154,13 @@ struct PointField {
   float share_bend;                ///< |share - its linear part| <= share_bend h^2 on short steps h
 };
 
-/// The share of the range of angles as the strands of a fine level tell it.
-struct StrandShare {
-  float share, gradient[3];
+/// The share of the range of angles as the strands of a fine level tell it, at strand_place of a cube; lanes behind
+/// them hold nothing.
+struct StrandShares {
+  alignas(64) float share[lanes];
+  alignas(64) float slope[3][lanes];  ///< its derivatives by x, y, z
 };
+inline constexpr int floats_per_strand = 20 * lanes;  ///< of the memory that it takes
 
 inline constexpr int most_far_moments = 200;  ///< see MomentTable: 200 of degree 6, 80 of degree 4
 inline constexpr int most_far_nodes = 5;
@@ -271,7 +275,9 @@ struct BlockKernels {
   void (*far_split)(const float* pieces, int groups, const FarQuery&, unsigned short* near, FarSums&);
   /// Of the eight octants, from groups of pieces: curves, then points.
   void (*octant_bounds)(const float* pieces, int curve_groups, int point_groups, int degree, OctantBounds*);
-  void (*strand_share)(const FieldLevel&, int degree, const float point[3], StrandShare&);
+  /// `memory`: floats_per_strand for each strand, 64-byte aligned.
+  void (*strand_shares)(const FieldLevel&, int degree, const float (&center)[3], float half, float* memory,
+                        StrandShares&);
   void (*strand_samples)(const StrandQuery&, StrandSamples&);
   /// Adds a strand, (f, sum f_s u_s), to tensor_floats sums.
   void (*add_strand)(const float sums[4], float* tensor);

@@ -14,7 +14,6 @@ namespace {
 #include "field/trace/kernels/iso.h"
 #include "field/trace/kernels/strands.h"
 #include "field/trace/kernels/strand_samples.h"
-#include "field/trace/kernels/strand_share.h"
 #include "field/trace/kernels/angle_rows.h"
 #include "field/trace/kernels/share_patch.h"
 #include "field/trace/kernels/sample.h"
@@ -36,7 +35,7 @@ namespace {
 const BlockKernels& table() {
   static constexpr BlockKernels kernels{first_root,    roots_in_cell, roots_between,  point_field,
                                         walk,          cube_bounds,   far_moments,    far_split,
-                                        octant_bounds, strand_share,  strand_samples, add_strand};
+                                        octant_bounds, strand_shares, strand_samples, add_strand};
   return kernels;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "field/trace/level_cache.h"
+
 namespace marrow {
 namespace {
 
@@ -100,21 +102,23 @@ const Fit fit;
 
 using Data = std::array<double, data_count>;
 
+// Of this thread, for as many strands as any level had.
+float* memory_for(int strands) {
+  thread_local LevelBuffer buffer;
+  return buffer.allocate(static_cast<std::size_t>(strands) * floats_per_strand);
+}
+
 Data data_of(const BlockKernels& kernels, int degree, const FieldLevel& fine, const SharePatch& patch) {
   Data data{};
   const float half = 1 / patch.inverse_half;
+  StrandShares shares;
+  kernels.strand_shares(fine, degree, patch.center, half, memory_for(fine.strands->count), shares);
   for (std::size_t k = 0; k < strand_places; ++k) {
-    float at[3];
-    for (std::size_t i = 0; i < 3; ++i) at[i] = patch.center[i] + half * strand_place[k][i];
-    StrandShare here;
-    kernels.strand_share(fine, degree, at, here);
-    bool finite = std::isfinite(here.share);
-    for (const float g : here.gradient) finite = finite && std::isfinite(g);
-    // On a source, where all is inside.
-    if (!finite) here = {.share = 1, .gradient = {}};
-    data[4 * k] = static_cast<double>(here.share);
+    bool finite = std::isfinite(shares.share[k]);
+    for (const auto& slope : shares.slope) finite = finite && std::isfinite(slope[k]);
+    data[4 * k] = finite ? static_cast<double>(shares.share[k]) : 1;  // on a source, where all is inside
     for (std::size_t i = 0; i < 3; ++i)
-      data[4 * k + 1 + i] = slope_weight * static_cast<double>(half * here.gradient[i]);
+      data[4 * k + 1 + i] = finite ? slope_weight * static_cast<double>(half * shares.slope[i][k]) : 0;
   }
   return data;
 }
