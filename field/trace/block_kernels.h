@@ -32,9 +32,7 @@ struct StrandLevel {
   /// Strands that are not listed, for each monomial: weights w of axes v with sum w (v . u)^8 = sum f_i (u_i . u)^8 for
   /// every u; then sum f_i, and over pairs, each counted twice, f_i f_j (u_i . u_j)^8 and f_i f_j.
   const float* far = nullptr;
-  const float* axes = nullptr;    ///< x[48] y[48] z[48], the last three 0
-  float far_inverse2 = 0;         ///< 1 / d^2 of the nearest piece that is not listed
-  float far_bend[3] = {0, 0, 0};  ///< means over those strands: 1 / d^2, rho^2, rho n / d (kernels/strands.h)
+  const float* axes = nullptr;  ///< x[48] y[48] z[48], the last three 0
 };
 
 /// One representation of the field in a block: f = sum w d^-m + polynomial, G = grad_S f likewise with w tau. Sources

@@ -79,7 +79,7 @@ struct VariedAngle {
 
   // The shares on [t, t + h]. With q the largest distance from where they were summed, over that to the nearest source
   // there, fields are at most (1 - q)^-n times what they are there, their second derivatives (1 - q)^-(n + 2), and of
-  // the quotient of such a change and a sum of f, or of what ShareBounds tells, at most (1 - q)^-(6 n + 2) remains.
+  // the quotient of such a change and a sum of f at most (1 - q)^-(6 n + 2) remains.
   ShareRange shares_until(const Sample& p, float h) const {
     const SummedShare& from = p.summed;
     const float begin = p.t - from.t, end = begin + h, longest = max_of(abs_of(begin), abs_of(end));
