@@ -256,8 +256,8 @@ struct BlockKernels {
   };
   /// The first t in [t0, t1] where the corrected field reaches 1.
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
-  /// first_root() for each asked ray that comes into a cell whose alpha is constant, to the same bits. Null where the
-  /// instruction set has no good vectors of sixteen.
+  /// first_root() for each asked ray that comes into a cell, where skeletons have no angle each, to the same bits. Null
+  /// where the instruction set has no good vectors of sixteen.
   void (*roots_in_cell)(const BlockView&, const CellPlace&, const PacketView&, unsigned asked, bool any, PacketMemory&,
                         CellRoots&);
   /// The same of rays that are known to come through the cell, from `enter` to `exit`. Null with the other one.
@@ -277,8 +277,8 @@ struct BlockKernels {
   void (*strand_shares)(const FieldLevel&, int degree, const float (&center)[3], float half, float* memory,
                         StrandShares&);
   void (*strand_samples)(const StrandQuery&, StrandSamples&);
-  /// Adds a strand, (f, sum f_s u_s), to tensor_floats sums.
-  void (*add_strand)(const float sums[4], float* tensor);
+  /// Adds a strand to tensor_floats sums at each of strand_place, not where its f is infinite.
+  void (*add_strand)(const StrandSamples&, float* tensors);
 };
 
 /// The kernels of an instruction set ("sse4", "avx2", "avx512"), or of the best one here for "";

@@ -233,9 +233,7 @@ StrandView Strands::fold(std::vector<Probed>& probed, const Cube& cube, const St
     const double error = error_of(p.samples);
     const bool far = static_cast<double>(p.samples.ratio) <= largest_ratio && error <= fold_budget * others;
     if (!far && !(error <= forced)) return false;
-    for (std::size_t k = 0; k < strand_places; ++k)
-      if (std::isfinite(p.samples.sums[k][0]))
-        kernels_.add_strand(p.samples.sums[k], values.data() + k * tensor_floats);
+    kernels_.add_strand(p.samples, values.data());
     view.error += others > 0 ? error / others : 0;
     return true;
   });

@@ -1,4 +1,4 @@
-// Reading the tables of a range of angles where rays go in lanes (iso_curve.h). Part of block_kernels_<set>.cpp.
+// Reading the tables of a range of angles, for one ray or sixteen (iso_curve.h). Part of block_kernels_<set>.cpp.
 
 // What is known of each table.
 inline float of_row(const float* numbers, int, int row) { return numbers[row]; }
