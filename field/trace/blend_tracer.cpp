@@ -115,10 +115,11 @@ TraceStatistics BlendTracer::statistics() const {
       if (b == nullptr) continue;
       ++s.blocks;
       s.bytes += sizeof(Block);
+      if (b->patches() != nullptr) s.bytes += b->patches()->bytes();
       const BlockLevel* fine = b->fine_if_kept();
       if (fine == nullptr) continue;
       s.sources += static_cast<std::size_t>((fine->level.curve_groups + fine->level.point_groups) * lanes);
-      s.largest_error = std::max(s.largest_error, state_->largest_error(*fine));
+      s.largest_error = std::max(s.largest_error, state_->largest_error(*fine, b->patches()));
     }
   });
   return s;

@@ -81,9 +81,10 @@ struct BlendTracer::State {
   // |dC/dalpha| <= n - 1 at the surface: |g(f) - G| at alpha = pi/2, with g(1) = n - 1 and G <= 2 g (tracing.md 2);
   // checked numerically for other angles. The share of alpha is a quotient of sums of some 1. What is known of strands
   // is an estimate.
-  double largest_error(const BlockLevel& level) const {
+  double largest_error(const BlockLevel& level, const SharePatches* patches) const {
+    const double angle_error = level.angle_error + (patches != nullptr ? patches->error() : 0);
     const double range_of_angles = range ? range->most - range->least : 0, steepest = field.degree - 1;
-    const double turned = steepest * range_of_angles * (level.angle_error + level.f_error);
+    const double turned = steepest * range_of_angles * (angle_error + level.f_error);
     return level.f_error + level.gradient_error / field.degree + turned;
   }
 };

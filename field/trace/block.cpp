@@ -1,5 +1,6 @@
 #include "field/trace/block.h"
 
+#include <algorithm>
 #include <bit>
 #include <memory>
 
@@ -67,7 +68,14 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
             .degree = context.degree,
             .iso = context.iso.view(),
             .rows = context.iso.views().data(),
-            .row_count = static_cast<int>(context.iso.views().size())} {
+            .row_count = static_cast<int>(context.iso.views().size()),
+            .tables = context.iso.tables()} {
+  if (context.strands != nullptr) {
+    patches_ = std::make_unique<const SharePatches>();
+    view_.find_patch = [](const void* owner, const int(&layer)[3]) -> const SharePatch& {
+      return static_cast<const Block*>(owner)->patch(layer);
+    };
+  }
   const auto find_octants = [&](const BlockLevel& coarse) {
     for (int octant = 0; octant < 8; ++octant)
       if (may_hold(context, coarse.level, octant_center({0, 0, 0}, 1, octant), 0.5)) octants_ |= 1U << octant;
@@ -99,6 +107,16 @@ std::uint64_t Block::surface(int octant) const {
     surface_known_.fetch_or(static_cast<std::uint8_t>(1U << octant), std::memory_order_release);
   }
   return slots.load(std::memory_order_relaxed);
+}
+
+const SharePatch& Block::patch(const int (&layer)[3]) const {
+  return patches_->at(layer, context_.kernels, context_.degree, [&]() -> const FieldLevel& { return fine().level; });
+}
+
+ShareAt Block::share(const Vec3d& place) const {
+  int layer[3];
+  for (std::size_t k = 0; k < 3; ++k) layer[k] = static_cast<int>(std::clamp(4 * place[k] + 4, 0.0, 7.5));
+  return share_at(patch(layer), place);
 }
 
 Box3 Block::surface_box() const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "field/math/box3.h"
@@ -12,6 +13,7 @@
 #include "field/trace/block_level.h"
 #include "field/trace/cell_tree.h"
 #include "field/trace/lazy.h"
+#include "field/trace/share_patch.h"
 
 namespace marrow {
 
@@ -59,6 +61,10 @@ class Block {
   const BlockLevel& coarse() const;
   const BlockLevel& fine() const;
   const BlockLevel* fine_if_kept() const { return fine_.whole.peek(); }
+  /// Where directions give the angle, else null.
+  const SharePatches* patches() const { return patches_.get(); }
+  /// The share of the range of angles at a place of the block, where directions give it.
+  ShareAt share(const Vec3d& place) const;
 
  private:
   const Context& context_;
@@ -79,6 +85,8 @@ class Block {
   void keep_recipe(const Stored&, const BlockLevel&, std::span<const PieceRule>) const;
   Stored coarse_, fine_;
   std::uint64_t surface(int octant) const;
+  const SharePatch& patch(const int (&layer)[3]) const;
+  std::unique_ptr<const SharePatches> patches_;
   unsigned octants_ = 0;  // a bit for each that may hold surface
   mutable std::array<std::atomic<std::uint64_t>, 8> surface_{};
   mutable std::atomic<std::uint8_t> surface_known_ = 0;  // a bit for each octant

@@ -18,6 +18,7 @@ namespace marrow {
 inline constexpr int lanes = 16;
 inline constexpr int floats_per_group = 5 * lanes;  ///< x[16] y[16] z[16] share[16] radius[16]
 
+inline constexpr int most_axes = 45;
 inline constexpr int tensor_floats = 48;  ///< 45 components of a tensor of degree 8; sums of f, f^2, f^2 with direction
 inline constexpr int most_strands = 512;  ///< that a block lists
 inline constexpr int quadratic_monomials = 10;  ///< 1 x y z xx yy zz xy xz yz
@@ -31,9 +32,7 @@ struct StrandLevel {
   /// Strands that are not listed, for each monomial: weights w of axes v with sum w (v . u)^8 = sum f_i (u_i . u)^8 for
   /// every u; then sum f_i, and over pairs, each counted twice, f_i f_j (u_i . u_j)^8 and f_i f_j.
   const float* far = nullptr;
-  const float* axes = nullptr;    ///< x[48] y[48] z[48], the last three 0
-  float far_inverse2 = 0;         ///< 1 / d^2 of the nearest piece that is not listed
-  float far_bend[3] = {0, 0, 0};  ///< means over those strands: 1 / d^2, rho^2, rho n / d (kernels/strands.h)
+  const float* axes = nullptr;  ///< x[48] y[48] z[48], the last three 0
 };
 
 /// One representation of the field in a block: f = sum w d^-m + polynomial, G = grad_S f likewise with w tau. Sources
@@ -52,6 +51,17 @@ struct FieldLevel {
   const StrandLevel* strands = nullptr;  ///< the strands, whose near sources are those of the level, in their order
 };
 
+/// The share of the range of angles in a part of a block, where directions give it: a polynomial in (x - center) /
+/// half, its coefficients in the order of far_field.h. It is the share that is traced; see share_patch.h.
+struct alignas(64) SharePatch {
+  static constexpr int degree = 4, coefficients = 35;
+  float coefficient[coefficients] = {};
+  float center[3] = {0, 0, 0}, inverse_half = 1;
+  int layers_log2 = 2;  ///< the part is so many of the eight layers of slots wide
+  float error = 0;      ///< what it may be off from what it was fitted to: an estimate
+};
+inline constexpr int floats_per_patch = sizeof(SharePatch) / sizeof(float);
+
 /// What the kernels read of a block. The coarse level finds where the surface can be; the fine level is the field that
 /// is rendered.
 struct BlockView {
@@ -66,10 +76,14 @@ struct BlockView {
   IsoCurve::View iso;
   const IsoCurve::View* rows = nullptr;  ///< where alpha varies: tables for equal steps of its share
   int row_count = 0;
+  AngleTables tables;  ///< the same
+  /// Where directions give alpha, else null: the part of the block that holds a slot, by its layers, 0 to 7.
+  const SharePatch& (*find_patch)(const void* owner, const int (&layer)[3]) = nullptr;
 
   std::uint64_t surface(int octant) const { return find_surface(owner, octant); }
   const FieldLevel& coarse() const { return make_coarse(owner); }
   const FieldLevel& fine() const { return make_fine(owner); }
+  const SharePatch& patch(const int (&layer)[3]) const { return find_patch(owner, layer); }
 };
 
 struct LocalRay {
@@ -101,7 +115,7 @@ struct TileLayers {
 
 /// What the search of a packet needs beside the stack, which may be small: one for each thread.
 struct PacketMemory {
-  static constexpr std::size_t of_search = 80 << 10, of_rays = 12 << 10;
+  static constexpr std::size_t of_search = 96 << 10, of_rays = 32 << 10;
   alignas(64) unsigned char search[of_search];
   alignas(64) unsigned char rays[of_rays];
 };
@@ -137,9 +151,17 @@ struct PointField {
   float hessian[6];                ///< of the potential: derivative of G; xx yy zz xy xz yz
   float nearest;                   ///< distance to the nearest source
   float second, third;             ///< M2 and m M3 of tracing.md 3.1, for bounds of f and G nearby
-  float share, share_gradient[3];  ///< of the range of angles, where alpha varies; else 0
+  float share, share_gradient[3];  ///< of the range of angles, where each skeleton has one; else 0
   float share_bend;                ///< |share - its linear part| <= share_bend h^2 on short steps h
 };
+
+/// The share of the range of angles as the strands of a fine level tell it, at strand_place of a cube; lanes behind
+/// them hold nothing.
+struct StrandShares {
+  alignas(64) float share[lanes];
+  alignas(64) float slope[3][lanes];  ///< its derivatives by x, y, z
+};
+inline constexpr int floats_per_strand = 20 * lanes;  ///< of the memory that it takes
 
 inline constexpr int most_far_moments = 200;  ///< see MomentTable: 200 of degree 6, 80 of degree 4
 inline constexpr int most_far_nodes = 5;
@@ -237,8 +259,8 @@ struct BlockKernels {
   };
   /// The first t in [t0, t1] where the corrected field reaches 1.
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
-  /// first_root() for each asked ray that comes into a cell whose alpha is constant, to the same bits. Null where the
-  /// instruction set has no good vectors of sixteen.
+  /// first_root() for each asked ray that comes into a cell, where skeletons have no angle each, to the same bits. Null
+  /// where the instruction set has no good vectors of sixteen.
   void (*roots_in_cell)(const BlockView&, const CellPlace&, const PacketView&, std::uint64_t asked, bool any,
                         PacketMemory&, CellRoots&);
   /// The same of rays that are known to come through the cell, from `enter` to `exit`. Null with the other one.
@@ -254,9 +276,12 @@ struct BlockKernels {
   void (*far_split)(const float* pieces, int groups, const FarQuery&, unsigned short* near, FarSums&);
   /// Of the eight octants, from groups of pieces: curves, then points.
   void (*octant_bounds)(const float* pieces, int curve_groups, int point_groups, int degree, OctantBounds*);
+  /// `memory`: floats_per_strand for each strand, 64-byte aligned.
+  void (*strand_shares)(const FieldLevel&, int degree, const float (&center)[3], float half, float* memory,
+                        StrandShares&);
   void (*strand_samples)(const StrandQuery&, StrandSamples&);
-  /// Adds a strand, (f, sum f_s u_s), to tensor_floats sums.
-  void (*add_strand)(const float sums[4], float* tensor);
+  /// Adds a strand to tensor_floats sums at each of strand_place, not where its f is infinite.
+  void (*add_strand)(const StrandSamples&, float* tensors);
 };
 
 /// The kernels of an instruction set ("sse4", "avx2", "avx512"), or of the best one here for "";

@@ -14,9 +14,11 @@ namespace {
 #include "field/trace/kernels/iso.h"
 #include "field/trace/kernels/strands.h"
 #include "field/trace/kernels/strand_samples.h"
-#include "field/trace/kernels/share_bounds.h"
+#include "field/trace/kernels/angle_rows.h"
+#include "field/trace/kernels/share_patch.h"
 #include "field/trace/kernels/sample.h"
 #include "field/trace/kernels/varied_angle.h"
+#include "field/trace/kernels/patched_angle.h"
 #include "field/trace/kernels/march.h"
 #include "field/trace/kernels/search.h"
 #include "field/trace/kernels/runs.h"
@@ -32,9 +34,9 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root,    roots_in_cell,  roots_between, point_field,
-                                        walk,          cube_bounds,    far_moments,   far_split,
-                                        octant_bounds, strand_samples, add_strand};
+  static constexpr BlockKernels kernels{first_root,    roots_in_cell, roots_between,  point_field,
+                                        walk,          cube_bounds,   far_moments,    far_split,
+                                        octant_bounds, strand_shares, strand_samples, add_strand};
   return kernels;
 }
 

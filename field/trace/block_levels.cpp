@@ -73,7 +73,7 @@ BlockLevel coarse_level(const Block::Context& context, const CellTree::Cell& cel
 
 BlockLevel fine_level(const Block::Context& context, const CellTree::Cell& cell, const Allocate& allocate,
                       std::vector<PieceRule>* rules) {
-  if (context.strands != nullptr) return write_stranded_level(make_stranded_level(context, cell), cell.half, allocate);
+  if (context.strands != nullptr) return write_stranded_level(make_stranded_level(context, cell), allocate);
   return write_level(make_level(context, context.fine, context.pieces, context.tree.surroundings(cell), cell,
                                 context.fine.far_degree(), rules),
                      make_angle_level(context, context.fine, cell, context.fine.far_degree()), Errors::Stated,

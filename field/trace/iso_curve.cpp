@@ -20,7 +20,7 @@ constexpr double largest_step = 0.03;
 constexpr int entry_count = 256, probe_count = 256;
 
 // Tables for `count` angles, the first and the last at a given place in steps of `step`.
-std::vector<IsoTable> tables(const Correction& c, double first, double step, std::size_t count, int entries) {
+std::vector<IsoTable> tables_for(const Correction& c, double first, double step, std::size_t count, int entries) {
   std::vector<std::optional<IsoTable>> made(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     const double alpha = first + step * static_cast<double>(i);
@@ -63,8 +63,8 @@ IsoCurve::IsoCurve(const Correction& correction, double alpha) : least_(alpha), 
 IsoCurve::IsoCurve(const Correction& correction, double least, double most) : least_(least), most_(most) {
   const double steps = std::max(8.0, std::ceil((most - least) / largest_step)), step = (most - least) / steps;
   const auto count = static_cast<std::size_t>(steps);
-  rows_ = tables(correction, least, step, count + 1, entry_count);
-  const auto between = tables(correction, least + step / 2, step, count, probe_count);
+  rows_ = tables_for(correction, least, step, count + 1, entry_count);
+  const auto between = tables_for(correction, least + step / 2, step, count, probe_count);
   for (std::size_t k = 0; k < count; ++k)
     for (int i = 0; i < between[k].size(); ++i) {
       const IsoTable::Point p = between[k].point(i);
@@ -72,7 +72,31 @@ IsoCurve::IsoCurve(const Correction& correction, double least, double most) : le
       if (!(off > 0) || !std::isfinite(off)) continue;  // beyond the end of a table V_lower says no
       for (std::size_t row = k > 0 ? k - 1 : 0; row <= std::min(k + 2, count); ++row) rows_[row].lower_around(p, off);
     }
-  for (const IsoTable& row : rows_) views_.push_back(row.view());
+  for (const IsoTable& row : rows_) {
+    const View& view = views_.emplace_back(row.view());
+    for (int i = 0; i < view.size; ++i) {
+      const int next = std::min(i + 1, view.size - 1);
+      steps_.insert(steps_.end(), {view.value[i], view.lower[i], view.value[next], view.lower[next]});
+    }
+    u_begin_.push_back(view.u_begin);
+    inverse_step_.push_back(view.inverse_step);
+    sin_theta_.push_back(view.sin_theta);
+    cos_theta_.push_back(view.cos_theta);
+  }
+  constexpr std::size_t entries = 16;
+  for (auto* of_rows : {&u_begin_, &inverse_step_, &sin_theta_, &cos_theta_})
+    of_rows->resize(std::max(of_rows->size(), entries));
+}
+
+AngleTables IsoCurve::tables() const {
+  if (steps_.empty()) return {};
+  return {.steps = steps_.data(),
+          .u_begin = u_begin_.data(),
+          .inverse_step = inverse_step_.data(),
+          .sin_theta = sin_theta_.data(),
+          .cos_theta = cos_theta_.data(),
+          .size = views_.front().size,
+          .count = static_cast<int>(views_.size())};
 }
 
 bool IsoCurve::outside(double x_low, double x_high, double y_high) const {
@@ -89,8 +113,8 @@ double IsoCurve::margin(double x, double y, double share) const {
   const Place place(rows_, share);
   double sum = 0;
   for (std::size_t i = 0; i < place.rows.size(); ++i) {
-    const double nominal = place.rows[i].nominal(x, y), lower = place.rows[i].margin(x, y);
-    if (!std::isfinite(nominal) || !std::isfinite(lower)) return -std::numeric_limits<double>::infinity();
+    const auto [nominal, lower] = place.rows[i].margins(x, y);
+    if (!std::isfinite(nominal)) return -std::numeric_limits<double>::infinity();
     sum += place.weight[i] * nominal - std::fabs(place.weight[i]) * (nominal - lower);
   }
   return sum;

@@ -11,6 +11,15 @@
 
 namespace marrow {
 
+/// The tables of a range of angles, for equal steps of their share, one after the other and of one size, with what
+/// IsoTable::View tells of each.
+struct AngleTables {
+  const float* steps = nullptr;  ///< value, lower, and both of the next entry
+  /// Of each table; there are at least 16 numbers.
+  const float *u_begin = nullptr, *inverse_step = nullptr, *sin_theta = nullptr, *cos_theta = nullptr;
+  int size = 0, count = 0;
+};
+
 class IsoCurve {
  public:
   using View = IsoTable::View;
@@ -46,6 +55,8 @@ class IsoCurve {
   View view() const { return views_.front(); }
   /// Of all tables.
   std::span<const View> views() const { return views_; }
+  /// The same; none for one angle.
+  AngleTables tables() const;
   double least() const { return least_; }
   double most() const { return most_; }
 
@@ -55,6 +66,7 @@ class IsoCurve {
   double least_, most_;
   std::vector<IsoTable> rows_;
   std::vector<View> views_;
+  std::vector<float> steps_, u_begin_, inverse_step_, sin_theta_, cos_theta_;  // of tables()
 };
 
 }  // namespace marrow

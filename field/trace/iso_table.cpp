@@ -213,6 +213,18 @@ double IsoTable::upper(double u) const {
 
 double IsoTable::margin(double x, double y) const { return lower(y * sin_ - x * cos_) - (x * sin_ + y * cos_); }
 
+IsoTable::Margins IsoTable::margins(double x, double y) const {
+  const double at = std::max(0.0, (y * sin_ - x * cos_ - u_begin_) / step_), v = x * sin_ + y * cos_;
+  constexpr double beyond = -std::numeric_limits<double>::infinity();
+  if (!(at < static_cast<double>(value_.size() - 1))) return {beyond, beyond};
+  const auto i = static_cast<std::size_t>(at);
+  const double fraction = at - static_cast<double>(i);
+  const auto between = [&](const std::vector<float>& table) {
+    return table[i] + (static_cast<double>(table[i + 1]) - table[i]) * fraction;
+  };
+  return {between(value_) - v, between(lower_) - v};
+}
+
 // The residual V(u) - v falls where C grows: -d/dx = sin + V' cos, -d/dy = cos - V' sin.
 IsoTable::Slope IsoTable::gradient(double x, double y) const {
   const double at =

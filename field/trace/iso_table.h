@@ -46,6 +46,11 @@ class IsoTable {
   double margin(double x, double y) const;
   /// The same by V itself: 0 on the curve.
   double nominal(double x, double y) const;
+  /// Both at once, but minus infinity beyond the end of the table.
+  struct Margins {
+    double nominal, lower;
+  };
+  Margins margins(double x, double y) const;
   /// The direction in which C grows fastest at a point of the curve, times a positive number: C_x and C_y in
   /// proportion, from the exact partials at the entries of the table.
   struct Slope {

@@ -54,7 +54,7 @@ StrandedLevel make_stranded_level(const Block::Context& context, const CellTree:
 
 // The level, then its directions, the far strands, the rests of near ones, the counts of their groups, and what refers
 // to them.
-BlockLevel write_stranded_level(const StrandedLevel& from, double half, const Allocate& allocate) {
+BlockLevel write_stranded_level(const StrandedLevel& from, const Allocate& allocate) {
   const auto floats_of = [](std::size_t n) { return (n + lanes - 1) / lanes * lanes; };
   constexpr std::size_t reference_floats = (sizeof(StrandLevel) + sizeof(float) - 1) / sizeof(float);
   const CellStrands& seen = from.seen;
@@ -71,15 +71,12 @@ BlockLevel write_stranded_level(const StrandedLevel& from, double half, const Al
       for (std::size_t k = 0; k < 4; ++k) rest[m * row + k * stride + i] = seen.rest[i].sums[4 * m + k];
   auto* const groups = reinterpret_cast<int*>(rest + quadratic_monomials * row);
   std::uninitialized_copy(from.groups.begin(), from.groups.end(), groups);
-  auto* const reference = new (rest + quadratic_monomials * row + stride)
-      StrandLevel{.directions = directions,
-                  .groups = groups,
-                  .rest = rest,
-                  .count = static_cast<int>(count),
-                  .far = far,
-                  .axes = strand_axes(),
-                  .far_inverse2 = static_cast<float>(seen.view.far_inverse2 * half * half)};
-  for (int i = 0; i < 3; ++i) reference->far_bend[i] = static_cast<float>(seen.view.far_bend[i] * half * half);
+  auto* const reference = new (rest + quadratic_monomials * row + stride) StrandLevel{.directions = directions,
+                                                                                      .groups = groups,
+                                                                                      .rest = rest,
+                                                                                      .count = static_cast<int>(count),
+                                                                                      .far = far,
+                                                                                      .axes = strand_axes()};
   BlockLevel out{.level = write_field(from.level, at),
                  .f_error = from.level.far.f_error,
                  .gradient_error = from.level.far.gradient_error,

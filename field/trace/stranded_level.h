@@ -20,7 +20,6 @@ struct StrandedLevel {
 
 StrandedLevel make_stranded_level(const Block::Context&, const CellTree::Cell&);
 
-/// `half` is that of the block.
-BlockLevel write_stranded_level(const StrandedLevel&, double half, const Allocate&);
+BlockLevel write_stranded_level(const StrandedLevel&, const Allocate&);
 
 }  // namespace marrow

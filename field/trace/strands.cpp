@@ -99,7 +99,6 @@ struct Strands::Cube {
 
 struct Strands::Probed {
   std::uint32_t strand;
-  double inverse2 = 0;  // 1 / d^2 of its nearest piece that was probed
   StrandSamples samples;
 };
 
@@ -186,8 +185,6 @@ Strands::Probed Strands::probe(std::uint32_t strand, const Cube& cube, std::span
                           .center = {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)},
                           .half = static_cast<float>(cube.half * s.scale)};
   kernels_.strand_samples(query, out.samples);
-  const double ratio = static_cast<double>(out.samples.ratio) / (std::sqrt(3.0) * cube.half);
-  out.inverse2 = ratio * ratio;
   return out;
 }
 
@@ -230,33 +227,16 @@ StrandView Strands::fold(std::vector<Probed>& probed, const Cube& cube, const St
     strongest = std::max(strongest, field_at_center(p.samples));
   }
   others -= strongest;
-  double folded = inherited, bend[3] = {};
-  if (parent != nullptr) {
-    for (int i = 0; i < 3; ++i) bend[i] = parent->far_bend[i] * inherited;
-    view.far_inverse2 = parent->far_inverse2;
-    view.error = parent->error;
-  }
+  if (parent != nullptr) view.error = parent->error;
   const double forced = largest_forced(probed, most);
   std::erase_if(probed, [&](const Probed& p) {
     const double error = error_of(p.samples);
     const bool far = static_cast<double>(p.samples.ratio) <= largest_ratio && error <= fold_budget * others;
     if (!far && !(error <= forced)) return false;
-    for (std::size_t k = 0; k < strand_places; ++k)
-      if (std::isfinite(p.samples.sums[k][0]))
-        kernels_.add_strand(p.samples.sums[k], values.data() + k * tensor_floats);
-    const float* m = p.samples.sums[0];
-    const double f = static_cast<double>(m[0]), b = p.inverse2, n = degree_;
-    const double c = f > 0 ? std::clamp(length(Vec3d{m[1], m[2], m[3]}) / f, 0.05, 1.0) : 1;
-    const double turn = strands_[p.strand].is_point ? 0 : (1 - c * c) / (c * c);
-    bend[0] += f * b;
-    bend[1] += f * n * n * b * turn;
-    bend[2] += f * n * n * b * std::sqrt(turn);
-    folded += f;
-    view.far_inverse2 = std::max(view.far_inverse2, b);
+    kernels_.add_strand(p.samples, values.data());
     view.error += others > 0 ? error / others : 0;
     return true;
   });
-  for (int i = 0; i < 3; ++i) view.far_bend[i] = folded > 0 ? bend[i] / folded : 0;
   view.far.resize(static_cast<std::size_t>(quadratic_monomials) * tensor_floats);
   fit_quadratics(values.data(), tensor_floats, view.far.data());
   for (const Probed& p : probed) view.near.push_back(p.strand);
@@ -326,7 +306,6 @@ CellStrands Strands::around(const Tile& tile, const Vec3d& center, double half,
     if (const auto listed = pieces_of(p.strand); !listed.empty()) p = probe(p.strand, cube, listed);
     StrandRest& rest = cell.rest.emplace_back(StrandRest{p.strand, {}});
     fit_quadratics(p.samples.sums[0], 4, rest.sums);
-    cell.view.far_inverse2 = std::max(cell.view.far_inverse2, p.inverse2);
   }
   cell.far = far_rows(cell.view.far, values);
   return cell;

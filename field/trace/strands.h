@@ -24,8 +24,6 @@ struct BlendField;
 struct StrandView {
   std::vector<std::uint32_t> near;  ///< counted one by one
   std::vector<float> far;           ///< all others: tensor_floats for each monomial, in the coordinates of the cube
-  double far_bend[3] = {};          ///< StrandLevel::far_bend of those, but in the blend's units
-  double far_inverse2 = 0;          ///< 1 / d^2 of the nearest of their pieces
   double error = 0;                 ///< of the share of angles, because of the quadratic: an estimate
 };
 

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "field/math/elementary.h"
 #include "tests/trace/random_scene.h"
 
 namespace marrow::test {
@@ -194,6 +195,23 @@ TEST(IsoCurve, HoldsForAllAnglesOfARange) {
     }
     EXPECT_GT(certain, 500) << "n=" << n;
   }
+}
+
+// Over a range of angles C is largest at one end, by the side of the reference curve: what kernels and starts of rays
+// ask alone.
+TEST(IsoCurve, AnglesPullOneWayOnEachSideOfTheReferenceCurve) {
+  Random random(35);
+  for (const Projection projection : {Projection::Paper, Projection::Exact})
+    for (const bool cavity : {true, false})
+      for (int n = 3; n <= 8; ++n)
+        for (int i = 0; i < 2000; ++i) {
+          const double a = random.between(0, std::numbers::pi / 2), b = random.between(a, std::numbers::pi / 2);
+          const double x = random_field(random), y = random.between(0, 3.0 * (n - 1));
+          const double rise =
+              Correction(n, b, cavity, projection).value(x, y) - Correction(n, a, cavity, projection).value(x, y);
+          const bool right = integer_power(x, n) > integer_power(y / (n - 1), n - 1);
+          ASSERT_GE(right ? rise : -rise, -1e-12) << "n=" << n << " x=" << x << " y=" << y << " " << a << " to " << b;
+        }
 }
 
 }  // namespace

@@ -151,13 +151,25 @@ INSTANTIATE_TEST_SUITE_P(Trace, Packets,
 TEST(PacketsOfVariedAngles, FindWhatSingleRaysFind) {
   Random random(4712);
   Compared count;
-  for (const BlendField& blend : {random_angled_scene(random, {4, 0}, 5), random_stranded_scene(random, {4, 0}, 5)}) {
-    auto made = BlendTracer::make(blend, {});
-    ASSERT_TRUE(made);
-    for (int i = 0; i < 200; ++i) first_hit(**made, any_ray(random, blend));
-    for (int i = 0; i < 6; ++i) expect_same(**made, neighbours(random, blend), all, false, count);
-  }
+  for (const BlendField& blend : {random_angled_scene(random, {4, 0}, 5), random_stranded_scene(random, {4, 0}, 5),
+                                  random_stranded_scene(random, {5, 0}, 5)})
+    for (const std::string& set : sets_here()) {
+      auto made = BlendTracer::make(blend, {.instruction_set = set});
+      ASSERT_TRUE(made);
+      const BlendTracer& tracer = **made;
+      for (int i = 0; i < 200; ++i) first_hit(tracer, any_ray(random, blend));
+      for (int i = 0; i < 4; ++i) {
+        const bool any = random.whole(0, 1) == 0;
+        const Rays near = neighbours(random, blend);
+        expect_same(tracer, near, all, any, count);
+        expect_same(tracer, near, some_lanes(random), false, count);
+        expect_same(tracer, leaving(random, tracer, near), all, any, count);
+        expect_same(tracer, strangers(random, blend), all, any, count);
+        if (HasFatalFailure()) return;
+      }
+    }
   EXPECT_GT(count.hits, 0);
+  EXPECT_GT(count.entered_inside, 0);
 }
 
 }  // namespace

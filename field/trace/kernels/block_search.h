@@ -9,8 +9,9 @@ struct BlockRays {
   alignas(64) float front[packet_size], guess[packet_size];  // where the fine level begins, and looks first
   alignas(64) float t[packet_size], undecided[packet_size];
   alignas(64) int evaluations[packet_size];
-  std::uint64_t from_surface;                        // as in QueryOf
-  std::uint64_t begins_outside, enters_inside, hit;  // as in RootOf
+  alignas(64) float share[SharePatch::degree + 1][packet_size];  // ShareOnRun of the run, where patches give the angle
+  std::uint64_t from_surface;                                    // as in QueryOf
+  std::uint64_t begins_outside, enters_inside, hit;              // as in RootOf
 };
 
 inline Index16 mask_of(unsigned bits) {
@@ -59,17 +60,35 @@ class Lanes {
   unsigned taken_ = 0;
 };
 
+// The angle on the runs of sixteen rays.
+template <Angle Rule>
+struct AngleOnRuns {
+  AngleSource<Rule, V16> source;
+  void load(const Lanes&, Index16, const BlockRays&) {}
+};
+template <>
+struct AngleOnRuns<Angle::Patched> {
+  ShareOnRun<V16> run;
+  AngleSource<Angle::Patched, V16> source{run};
+  AngleOnRuns() = default;
+  AngleOnRuns(const AngleOnRuns&) = delete;
+  AngleOnRuns& operator=(const AngleOnRuns&) = delete;
+  void load(const Lanes& at, Index16 which, const BlockRays& r) {
+    at.load(which, r.begin, run.from);
+    for (int i = 0; i <= SharePatch::degree; ++i) at.load(which, r.share[i], run.way.c[i]);
+  }
+};
+
+template <Angle Rule>
 class BlockSearch {
  public:
   BlockSearch(const BlockView& block, bool any_root, PacketMemory& memory)
       : block_(block), any_root_(any_root), memory_(memory) {
-    static_assert(sizeof(Islands<false, V16>::Island[Islands<false, V16>::most]) <= PacketMemory::of_search);
-    static_assert(sizeof(BlockRays) + sizeof(Runs<V16>[groups]) <= PacketMemory::of_rays);
+    static_assert(sizeof(typename Islands<Rule, V16>::Island[Islands<Rule, V16>::most]) <= PacketMemory::of_search);
+    static_assert(sizeof(BlockRays) + sizeof(Runs<Rule, V16>[groups]) <= PacketMemory::of_rays);
     rays_ = reinterpret_cast<BlockRays*>(memory.rays);
-    runs_ = reinterpret_cast<Runs<V16>*>(memory.rays + sizeof(BlockRays));
+    runs_ = reinterpret_cast<Runs<Rule, V16>*>(memory.rays + sizeof(BlockRays));
   }
-  BlockRays& rays() { return *rays_; }
-
   // As first_root() of each of these rays.
   void run(std::uint64_t open) {
     BlockRays& r = *rays_;
@@ -115,7 +134,7 @@ class BlockSearch {
       const QueryOf<V16> query{at.load(r.from), at.load(r.to), any_root_, false, here, Index16{}};
       RootOf<V16> root;
       V16 front = query.t0;
-      const Index16 go_on = leave_surface<false>(block_, rays, query, here, root, front);
+      const Index16 go_on = leave_surface<Rule>(block_, rays, query, here, root, front);
       at.store(here, r.from, front);
       at.store(here & root.hit, r.t, root.t);
       at.add(here, r.evaluations, root.evaluations);
@@ -127,16 +146,28 @@ class BlockSearch {
     return open;
   }
 
+  Ray16 rays_of_group(int group) const {
+    Ray16 rays;
+    for (int k = 0; k < 3; ++k) {
+      rays.origin[k] = load(rays_->origin[k] + lanes * group);
+      rays.direction[k] = load(rays_->direction[k] + lanes * group);
+    }
+    rays.memory = &memory_;
+    return rays;
+  }
+
+  // Of runs that were found now; others keep theirs, as their patches do.
+  void store_shares(Runs<Rule, V16>& runs, const Ray16& rays, V16 begin, int first) {
+    const ShareOnRun<V16> share(runs.patches, rays, begin);
+    for (int i = 0; i <= SharePatch::degree; ++i) store(share.way.c[i], rays_->share[i] + first);
+  }
+
   void start_runs(std::uint64_t open) {
     const BlockRays& r = *rays_;
     for (int i = 0; i < groups; ++i) {
       if (!(open >> (lanes * i) & 0xffff)) continue;
-      Ray16 ray;
-      for (int k = 0; k < 3; ++k) {
-        ray.origin[k] = load(r.origin[k] + lanes * i);
-        ray.direction[k] = load(r.direction[k] + lanes * i);
-      }
-      runs_[i] = Runs<V16>(block_, ray, load(r.from + lanes * i), load(r.to + lanes * i));
+      const Ray16 ray = rays_of_group(i);
+      runs_[i] = Runs<Rule, V16>(block_, ray, load(r.from + lanes * i), load(r.to + lanes * i));
     }
   }
 
@@ -150,6 +181,7 @@ class BlockSearch {
       found |= static_cast<std::uint64_t>(lane_bits(runs_[i].next(mask_of(of_group), run))) << (lanes * i);
       store(run.begin, rays_->begin + lanes * i);
       store(run.end, rays_->end + lanes * i);
+      if constexpr (Rule == Angle::Patched) store_shares(runs_[i], rays_of_group(i), run.begin, lanes * i);
     }
     return found;
   }
@@ -160,14 +192,16 @@ class BlockSearch {
     std::uint64_t near = 0;
     surely_inside_ = 0;
     Ray16 rays{{}, {}, &memory_};
-    Marcher<false, V16> march(block_, block_.coarse(), rays);
-    Search<false, V16> search(march, V16{}, V16{});
-    Approach<false, V16> approach(search, any_root_);
+    AngleOnRuns<Rule> angle;
+    Marcher<Rule, V16> march(block_, block_.coarse(), rays, angle.source);
+    Search<Rule, V16> search(march, V16{}, V16{});
+    Approach<Rule, V16> approach(search, any_root_);
     Lanes at;
     for (;;) {
       if (waiting != 0) {
         const Index16 seated = at.seat(waiting);
         load_rays(at, seated, rays);
+        angle.load(at, seated, r);
         const V16 begin = at.load(r.begin), end = at.load(r.end);
         search.restart(seated, begin, end);
         march.evaluations = select(seated, Index16{}, march.evaluations);
@@ -197,14 +231,16 @@ class BlockSearch {
     std::uint64_t met = 0;
     if (waiting == 0) return met;
     Ray16 rays{{}, {}, &memory_};
-    Marcher<false, V16> march(block_, block_.fine(), rays);
-    Search<false, V16> search(march, V16{}, V16{});
-    Decision<false, V16> decision(search, V16{}, any_root_);
+    AngleOnRuns<Rule> angle;
+    Marcher<Rule, V16> march(block_, block_.fine(), rays, angle.source);
+    Search<Rule, V16> search(march, V16{}, V16{});
+    Decision<Rule, V16> decision(search, V16{}, any_root_);
     Lanes at;
     for (;;) {
       if (waiting != 0) {
         const Index16 seated = at.seat(waiting);
         load_rays(at, seated, rays);
+        angle.load(at, seated, r);
         search.restart(seated, at.load(r.front), at.load(r.end));
         at.load(seated, r.guess, decision.guess);
         decision.samples = select(seated, Index16{}, decision.samples);
@@ -234,7 +270,12 @@ class BlockSearch {
         ray.origin[k] = r.origin[k][lane];
         ray.direction[k] = r.direction[k][lane];
       }
-      if (is_inside<false>(block_, ray, r.begin[lane], r.evaluations[lane]))
+      AngleOf<Rule, float> angle;
+      if constexpr (Rule == Angle::Patched) {
+        angle.run.from = r.begin[lane];
+        for (int i = 0; i <= SharePatch::degree; ++i) angle.run.way.c[i] = r.share[i][lane];
+      }
+      if (is_inside<Rule>(block_, ray, r.begin[lane], angle.source, r.evaluations[lane]))
         r.enters_inside |= std::uint64_t{1} << lane;
     }
   }
@@ -243,6 +284,6 @@ class BlockSearch {
   const bool any_root_;
   PacketMemory& memory_;
   BlockRays* rays_;
-  Runs<V16>* runs_;  // of each sixteen
+  Runs<Rule, V16>* runs_;  // of each sixteen
   std::uint64_t surely_inside_ = 0;
 };

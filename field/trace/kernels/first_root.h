@@ -8,10 +8,31 @@ struct QueryOf {
   MaskOf<F> from_surface, from_outside;
 };
 
+// What gives the angle on a run, where it comes from.
+template <Angle Rule, class F>
+struct AngleOf {
+  AngleSource<Rule, F> source;
+};
+template <class F>
+struct AngleOf<Angle::Patched, F> {
+  ShareOnRun<F> run;
+  AngleSource<Angle::Patched, F> source{run};
+  AngleOf() = default;
+  AngleOf(Patches<F>& patches, const RayOf<F>& ray, F t) : run(patches, ray, t) {}
+  AngleOf(const AngleOf&) = delete;
+  AngleOf& operator=(const AngleOf&) = delete;
+};
+
+template <Angle Rule, class F>
+inline AngleOf<Rule, F> angle_from(Patches<F>& patches, const RayOf<F>& ray, F t) {
+  if constexpr (Rule == Angle::Patched) return {patches, ray, t};
+  else return {};
+}
+
 // Until it ends.
-template <bool Varied>
-inline RootOf<float> decide(Search<Varied>& search, float guess, bool any_root) {
-  Decision<Varied> decision(search, guess, any_root);
+template <Angle Rule>
+inline RootOf<float> decide(Search<Rule>& search, float guess, bool any_root) {
+  Decision<Rule> decision(search, guess, any_root);
   while (decision.step(true)) {}
   RootOf<float> root;
   root.t = decision.t;
@@ -21,16 +42,17 @@ inline RootOf<float> decide(Search<Varied>& search, float guess, bool any_root) 
 }
 
 // The coarse level finds where to look, the fine level decides.
-template <bool Varied>
-inline RootOf<float> root_in(const BlockView& block, const LocalRay& ray, const Run<float>& run, bool any_root) {
+template <Angle Rule>
+inline RootOf<float> root_in(const BlockView& block, const LocalRay& ray, const Run<float>& run,
+                             const AngleSource<Rule, float>& angle, bool any_root) {
   RootOf<float> root;
-  Marcher<Varied> march(block, block.coarse(), ray);
-  Search<Varied> search(march, run.begin, run.end);
-  Approach<Varied> approach(search, any_root);
+  Marcher<Rule> march(block, block.coarse(), ray, angle);
+  Search<Rule> search(march, run.begin, run.end);
+  Approach<Rule> approach(search, any_root);
   while (approach.step(true)) {}
   if (approach.near) {
-    Marcher<Varied> fine(block, block.fine(), ray);
-    Search<Varied> close(fine, search.front, run.end);
+    Marcher<Rule> fine(block, block.fine(), ray, angle);
+    Search<Rule> close(fine, search.front, run.end);
     root = decide(close, min_of(max_of(approach.guess, search.front), run.end), any_root);
     root.evaluations = fine.evaluations;
     root.begins_outside = close.have_last;
@@ -44,11 +66,12 @@ inline RootOf<float> root_in(const BlockView& block, const LocalRay& ray, const 
 }
 
 // Where a ray leaves that is inside at t0.
-template <bool Varied>
-inline RootOf<float> exit_in(const BlockView& block, const LocalRay& ray, const Run<float>& run, bool any_root) {
-  Marcher<Varied> march(block, block.fine(), ray);
+template <Angle Rule>
+inline RootOf<float> exit_in(const BlockView& block, const LocalRay& ray, const Run<float>& run,
+                             const AngleSource<Rule, float>& angle, bool any_root) {
+  Marcher<Rule> march(block, block.fine(), ray, angle);
   march.exits = true;
-  Search<Varied> search(march, run.begin, run.end);
+  Search<Rule> search(march, run.begin, run.end);
   search.record(true, march.sample(run.begin, true));
   RootOf<float> root;
   if (!search.missed()) root = decide(search, search.guess(), any_root);
@@ -60,27 +83,38 @@ inline RootOf<float> exit_in(const BlockView& block, const LocalRay& ray, const 
 inline constexpr float clearly_inside = 2e-5F;
 
 // Whether the ray is inside at t, by the coarse level where that can tell.
-template <bool Varied>
-inline bool is_inside(const BlockView& block, const LocalRay& ray, float t, int& evaluations) {
-  Marcher<Varied> rough(block, block.coarse(), ray);
-  const SampleOf<Varied> p = rough.sample(t, true);
+template <Angle Rule>
+inline bool is_inside(const BlockView& block, const LocalRay& ray, float t, const AngleSource<Rule, float>& angle,
+                      int& evaluations) {
+  Marcher<Rule> rough(block, block.coarse(), ray, angle);
+  const SampleOf<Rule> p = rough.sample(t, true);
   ++evaluations;
   if (p.residual > 0) return false;
   if (p.nominal < -clearly_inside && rough.inside_at(p, 0)) return true;
-  Marcher<Varied> march(block, block.fine(), ray);
+  Marcher<Rule> march(block, block.fine(), ray, angle);
   ++evaluations;
   return march.sample(t, true).nominal < -clearly_inside;
 }
 
 // A ray that begins at a surface is too near for the coarse level: one fine certificate leads away. Returns the rays
 // that are to go on from `front`; those that end here have a hit, or nothing.
-template <bool Varied, class F>
+template <Angle Rule, class F>
 inline MaskOf<F> leave_surface(const BlockView& block, const RayOf<F>& ray, const QueryOf<F>& query, MaskOf<F> rays,
                                RootOf<F>& root, F& front) {
   using Mask = MaskOf<F>;
-  Marcher<Varied, F> march(block, block.fine(), ray);
-  Search<Varied, F> start(march, query.t0, query.t1);
-  const SampleOf<Varied, F> first = march.sample(query.t0, rays);
+  Patches<F> patches;
+  F end = query.t1;
+  if constexpr (Rule == Angle::Patched) {
+    const IntOf<F> layer[3] = {layer_of(ray.origin[0] + ray.direction[0] * query.t0),
+                               layer_of(ray.origin[1] + ray.direction[1] * query.t0),
+                               layer_of(ray.origin[2] + ray.direction[2] * query.t0)};
+    patches.find(block, rays, layer);
+    end = min_of(end, max_of(query.t0, end_of_patch(patches, ray)));
+  }
+  const AngleOf<Rule, F> angle = angle_from<Rule>(patches, ray, query.t0);
+  Marcher<Rule, F> march(block, block.fine(), ray, angle.source);
+  Search<Rule, F> start(march, query.t0, end);
+  const SampleOf<Rule, F> first = march.sample(query.t0, rays);
   root.evaluations = march.evaluations;
   const Mask inside = rays & (first.nominal < -clearly_inside), outside = rays & !inside;
   root.hit = inside;
@@ -89,20 +123,21 @@ inline MaskOf<F> leave_surface(const BlockView& block, const RayOf<F>& ray, cons
   root.begins_outside = root.begins_outside | outside;
   start.record(outside, first);
   assign(outside, front, start.front);
-  return outside & !start.missed();
+  return outside & !(start.front >= query.t1);
 }
 
-template <bool Varied>
+template <Angle Rule>
 inline RootOf<float> first_root_of(const BlockView& block, const LocalRay& ray, const QueryOf<float>& query) {
   RootOf<float> root;
   root.begins_outside = query.from_outside;
   float front = query.t0;
-  if (!query.leaving && query.from_surface && !leave_surface<Varied>(block, ray, query, true, root, front)) return root;
-  Runs<float> runs(block, ray, front, query.t1);
+  if (!query.leaving && query.from_surface && !leave_surface<Rule>(block, ray, query, true, root, front)) return root;
+  Runs<Rule, float> runs(block, ray, front, query.t1);
   Run<float> run;
   while (!root.hit && runs.next(true, run)) {
-    const RootOf<float> found =
-        query.leaving ? exit_in<Varied>(block, ray, run, query.any) : root_in<Varied>(block, ray, run, query.any);
+    const AngleOf<Rule, float> angle = angle_from<Rule>(runs.patches, ray, run.begin);
+    const RootOf<float> found = query.leaving ? exit_in<Rule>(block, ray, run, angle.source, query.any)
+                                              : root_in<Rule>(block, ray, run, angle.source, query.any);
     root.hit = found.hit;
     if (found.hit) root.t = found.t;
     root.undecided = min_of(root.undecided, found.undecided);
@@ -110,18 +145,19 @@ inline RootOf<float> first_root_of(const BlockView& block, const LocalRay& ray, 
     root.begins_outside |= found.begins_outside;
     // Any root will do: a ray that begins inside meets one where it leaves.
     if (found.hit && !root.begins_outside && !query.leaving && !query.any)
-      root.enters_inside = is_inside<Varied>(block, ray, run.begin, root.evaluations);
+      root.enters_inside = is_inside<Rule>(block, ray, run.begin, angle.source, root.evaluations);
   }
   return root;
 }
 
-template <bool Varied>
+template <Angle Rule>
 inline Root single_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& q) {
   const QueryOf<float> query{q.t0, q.t1, q.any, q.leaving, q.from_surface, q.from_outside};
-  const RootOf<float> root = first_root_of<Varied>(block, ray, query);
+  const RootOf<float> root = first_root_of<Rule>(block, ray, query);
   return {root.t, root.hit, root.undecided, root.evaluations, root.begins_outside, root.enters_inside};
 }
 
 Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
-  return block.row_count > 1 ? single_root<true>(block, ray, query) : single_root<false>(block, ray, query);
+  if (block.find_patch != nullptr) return single_root<Angle::Patched>(block, ray, query);
+  return block.row_count > 1 ? single_root<Angle::Mean>(block, ray, query) : single_root<Angle::One>(block, ray, query);
 }

@@ -13,10 +13,22 @@ inline void sum_sources(const FieldLevel& level, int degree, const OnRay<V16> (&
   for_each_list(level, degree, PacketSummer{at, rays, lane_bits(active), nearest, sums});
 }
 
-// `Varied`: the angle is that of the place; for single rays alone.
-template <bool Varied, class F = float>
+// What gives the angle of a place.
+template <Angle Rule, class F>
+struct AngleSource {};
+template <>
+struct AngleSource<Angle::Mean, float> {
+  mutable SummedShare last;  // what was summed last
+};
+template <class F>
+struct AngleSource<Angle::Patched, F> {
+  const ShareOnRun<F>& run;
+};
+
+// An angle for each skeleton is for single rays alone.
+template <Angle Rule, class F = float>
 struct Marcher {
-  using Sample = SampleOf<Varied, F>;
+  using Sample = SampleOf<Rule, F>;
   using Mask = MaskOf<F>;
   using Ray = RayOf<F>;
 
@@ -25,9 +37,10 @@ struct Marcher {
   const Ray& ray;
   bool exits = false;  // the ray is inside, and what is looked for is where it leaves: all samples are mirrored
   IntOf<F> evaluations{};
-  mutable SampleShare<Varied> last;  // what of the angle was summed last
+  AngleSource<Rule, F> source;
 
-  Marcher(const BlockView& b, const FieldLevel& l, const Ray& r) : block(b), level(l), ray(r) {}
+  Marcher(const BlockView& b, const FieldLevel& l, const Ray& r, const AngleSource<Rule, F>& s)
+      : block(b), level(l), ray(r), source(s) {}
 
   // At t, of the rays that are active.
   Sample sample(F t, Mask active) {
@@ -46,7 +59,8 @@ struct Marcher {
     const F dy = (p.s.g[0] * p.s.dg[0] + p.s.g[1] * p.s.dg[1] + p.s.g[2] * p.s.dg[2]) / max_of(y, 1e-12F);
     p.raise = 1 + rounding + position_rounding * static_cast<float>(block.degree + 1) / p.distance;
     p.y = y + level.g_error;
-    if constexpr (Varied) angle().judge(p, at, y, dy);
+    if constexpr (Rule == Angle::Mean) angle().judge(p, at, y, dy);
+    else if constexpr (Rule == Angle::Patched) angle().judge(p, y, dy);
     else judge(p, y, dy);
     const Mask infinite = !(p.residual == p.residual);  // on a source
     p.residual = select(infinite, all_lanes<F>(-1), p.residual);
@@ -82,7 +96,10 @@ struct Marcher {
     p.residual = margin_at(iso, p.s.f * p.raise, p.y * p.raise);
   }
 
-  VariedAngle angle() const { return {block, level, ray, last.summed}; }
+  auto angle() const {
+    if constexpr (Rule == Angle::Mean) return VariedAngle{block, level, ray, source.last};
+    else return PatchedAngle<F>{block, level, source.run};
+  }
 
   // What is inside takes the part of what is outside. To within rounding: nothing more is claimed of exits.
   static void mirror(Sample& p) {
@@ -92,9 +109,9 @@ struct Marcher {
   }
 
   // Positive where the field with these sums is below 1: surely, or, around a sample that is not sure, as summed.
-  F margin(const Sample& p, F x, F y) const {
+  F margin(const Sample& p, F x, F y, Mask asked) const {
     F found = margin_at(block.iso, x * p.raise, y * p.raise);
-    const Mask as_summed = !p.sure;
+    const Mask as_summed = asked & !p.sure;
     if (any(as_summed)) found = select(as_summed, nominal_margin_at(block.iso, x, y), found);
     return found;
   }
@@ -126,12 +143,12 @@ struct Marcher {
     return {field, field + powers * a};
   }
 
-  // Whether all of [t, t + h] is on the side of p.
-  Mask stays_until(const Sample& p, F h) const {
+  // Whether all of [t, t + h] is on the side of p, of the rays that are asked for.
+  Mask stays_until(const Sample& p, F h, Mask asked) const {
     if constexpr (sizeof(F) == sizeof(float)) {
       if (exits) return inside_until(p, h);
     }
-    return outside_until(p, h);
+    return outside_until(p, h, asked);
   }
 
   // Whether t + h is on the other side than p.
@@ -164,18 +181,19 @@ struct Marcher {
 
   // Whether the field is below 1 on all of [t, t + h] (h of either sign): B3 and B4 of tracing.md. Both bounds are
   // convex in h, so the ends suffice.
-  Mask outside_until(const Sample& p, F h) const {
+  Mask outside_until(const Sample& p, F h, Mask asked) const {
     const F q = abs_of(h) / p.distance;
-    const Mask near = q < 0.9F;
+    const Mask near = asked & (q < 0.9F);
     if (!any(near)) return near;
     const Bend bend = bend_until(p, h, q);
     const F x_end = p.s.f + p.s.df * h + bend.field;
     const F y_up = max_of(p.y, turned_length(p, h) + bend.gradient + level.g_error);
-    if constexpr (Varied) return near & (angle().margin_within(p, max_of(p.s.f, x_end), y_up, h) > 0.0F);
-    const Mask below = near & (margin(p, max_of(p.s.f, x_end), y_up) > 0.0F);
+    if constexpr (Rule != Angle::One)
+      return near & (angle().margin_within(p, max_of(p.s.f, x_end), y_up, h, near) > 0.0F);
+    const Mask below = near & (margin(p, max_of(p.s.f, x_end), y_up, near) > 0.0F);
     if (!block.iso.two_sided || !any(below)) return below;
     const F x_low = min_of(p.s.f, p.s.f + p.s.df * h - bend.field) * (1 - rounding) - 2 * level.f_error;
-    return below & (margin(p, max_of(0.0F, x_low), y_up) > 0.0F);
+    return below & (margin(p, max_of(0.0F, x_low), y_up, below) > 0.0F);
   }
 
   // Whether the field is above 1 at t + h, by the same bounds and errors from below. For alpha < 0 the curve rises,
@@ -188,7 +206,7 @@ struct Marcher {
     F x = x_high - 2 * bend.field - 2 * level.f_error;
     const Mask known = (q < 0.5F) & (x > 0.0F) & (y > 0.0F);
     if (!any(known)) return known;
-    if constexpr (Varied) return angle().inside_within(p, x, y, h);
+    if constexpr (Rule != Angle::One) return known & angle().inside_within(p, x, y, h);
     if (block.iso.two_sided) x = max_of(x, min_of(x_high, block.iso.peak_x));
     return known & (curve_at(block.iso, turned_u(block.iso, x, y)).value < turned_v(block.iso, x, y));
   }
@@ -204,7 +222,7 @@ struct Marcher {
     const float y_end = along / max_of(p.y, 1e-12F) - bend.gradient;
     const float y = max_of(0, min_of(p.y, y_end)), x_end = p.s.f + p.s.df * h;
     float x = max_of(0, min_of(p.s.f, x_end - bend.field));
-    if constexpr (Varied) return angle().inside_within(p, x, y, h);
+    if constexpr (Rule != Angle::One) return angle().inside_within(p, x, y, h);
     if (block.iso.two_sided) x = max_of(x, min_of(max_of(p.s.f, x_end + bend.field), block.iso.peak_x));
     return nominally_inside(block.iso, x, y);
   }
@@ -214,7 +232,7 @@ struct Marcher {
     if (!(q < 0.5F)) return false;
     const Bend bend = bend_until(p, h, q);
     const float y = turned_length(p, h) + bend.gradient, x = p.s.f + p.s.df * h;
-    if constexpr (Varied) return angle().nominal_within(p, x + bend.field, y, h) > 0.0F;
+    if constexpr (Rule != Angle::One) return angle().nominal_within(p, x + bend.field, y, h) > 0.0F;
     return nominal_margin_at(block.iso, x + bend.field, y) > 0.0F &&
            (!block.iso.two_sided || nominal_margin_at(block.iso, max_of(0, x - bend.field), y) > 0.0F);
   }
@@ -253,7 +271,8 @@ struct Marcher {
                 p.y_weight * (p.s.third * (m + 1) * (m + 2) * 0.5F + level.far_g_bend);
     const F b = -sign * p.slope;
     F model = step_to_zero(p.margin, b, c);
-    if constexpr (Varied) {
+    if constexpr (Rule == Angle::Patched) model = step_to_zero(p.margin, b, c + p.residual_bend);
+    if constexpr (Rule == Angle::Mean) {
       if (p.residual_bend > 0.0F) {  // or with the worst share
         const float left = p.margin - p.residual_drop;
         model = step_to_zero(p.margin, b, c + p.residual_bend);
@@ -265,7 +284,7 @@ struct Marcher {
     const auto try_step = [&](Mask sensible, F h) {
       sensible = sensible & open;
       if (!any(sensible)) return;
-      const Mask proved = sensible & stays_until(p, sign * h);
+      const Mask proved = sensible & stays_until(p, sign * h, sensible);
       step = select(proved, h, step);
       open = open & !proved;
     };

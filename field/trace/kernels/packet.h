@@ -187,10 +187,11 @@ void roots_between(const BlockView& block, const CellPlace& cell, const PacketVi
   out.entered = asked;
   out.met = out.hit = out.begins_outside = out.enters_inside = 0;
   if (asked == 0) return;
-  BlockSearch search(block, any_root, memory);
-  enter_block(cell, rays, asked, out, search.rays());
-  search.run(asked);
-  leave_block(cell, rays, asked, search.rays(), any_root, out);
+  BlockRays& in_block = *reinterpret_cast<BlockRays*>(memory.rays);
+  enter_block(cell, rays, asked, out, in_block);
+  if (block.find_patch != nullptr) BlockSearch<Angle::Patched>(block, any_root, memory).run(asked);
+  else BlockSearch<Angle::One>(block, any_root, memory).run(asked);
+  leave_block(cell, rays, asked, in_block, any_root, out);
 }
 
 void roots_in_cell(const BlockView& block, const CellPlace& cell, const PacketView& rays, std::uint64_t asked,

@@ -58,14 +58,6 @@ inline void find_mean_share(const FieldLevel& angle, int degree, const float p[3
   out.share_bend = n * (n + 1) * (s.second + out.share * out.second) * inverse;
 }
 
-inline void find_strand_share(const FieldLevel& level, int degree, const float p[3], PointField& out) {
-  constexpr float axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  const ShareValue<3> value = strand_share(level, degree, p, axes);
-  out.share = value.share;
-  for (int i = 0; i < 3; ++i) out.share_gradient[i] = value.slope[i];
-  out.share_bend = value.bend;
-}
-
 PointField point_field(const FieldLevel& level, int degree, const float p[3]) {
   FullSums s{};
   V16 nearest{};
@@ -88,6 +80,5 @@ PointField point_field(const FieldLevel& level, int degree, const float p[3]) {
   out.share = out.share_bend = 0;
   for (float& g : out.share_gradient) g = 0;
   if (level.angle != nullptr) find_mean_share(*level.angle, degree, p, out);
-  if (level.strands != nullptr) find_strand_share(level, degree, p, out);
   return out;
 }

@@ -40,6 +40,13 @@ class SlotBits {
   alignas(64) int words_[16] = {};  // two for each octant
 };
 
+// The layer of a coordinate.
+template <class F>
+inline IntOf<F> layer_of(F x) {
+  constexpr float last = 7.5F;
+  return whole_part(max_of(0.0F, min_of(x * 4 + 4, last)));
+}
+
 // Which of the eight layers of slots along an axis the ray is in, and where it leaves it. The outer layers go on
 // beyond the block, so that no rounding of its faces cuts off the end of a ray.
 template <class F>
@@ -51,8 +58,7 @@ class Layer {
   Layer() = default;
   Layer(F origin, F direction, F t)
       : origin_(origin), inverse_(1 / nonzero(direction)), upward_(nonzero(direction) > 0.0F) {
-    constexpr float last = 7.5F;
-    index = whole_part(max_of(0.0F, min_of((origin + direction * t) * 4 + 4, last)));
+    index = layer_of(origin + direction * t);
     find_leave();
   }
 
@@ -81,13 +87,15 @@ struct Run {
 };
 
 // From slot to slot along the ray [Amanatides and Woo 1987]; neighbours are joined. Bounds of slots hold a little
-// beyond them, by far more than planes and places are rounded.
-template <class F>
+// beyond them, by far more than planes and places are rounded. Where the angle goes by patches, a run ends with its
+// patch.
+template <Angle Rule, class F>
 class Runs {
  public:
   using Mask = MaskOf<F>;
 
-  Runs(const BlockView& block, const RayOf<F>& ray, F t0, F t1) : slots_(block), t_(t0), end_(t1), ended_(!(t0 < t1)) {
+  Runs(const BlockView& block, const RayOf<F>& ray, F t0, F t1)
+      : block_(&block), slots_(block), t_(t0), end_(t1), ended_(!(t0 < t1)) {
     for (int k = 0; k < 3; ++k) layers_[k] = Layer<F>(ray.origin[k], ray.direction[k], t0);
   }
 
@@ -98,20 +106,29 @@ class Runs {
       const F leave = min_of(min_of(layers_[0].leave, layers_[1].leave), min_of(layers_[2].leave, end_));
       const IntOf<F> layer[3] = {layers_[0].index, layers_[1].index, layers_[2].index};
       const Mask crossed = open & (leave > t_), surface = crossed & slots_.at(layer, crossed);
-      assign(surface & !found, run.begin, t_);
-      assign(surface, run.end, leave);
-      const Mask closed = found & crossed & !surface;
+      const Mask first = surface & !found;
+      Mask waits{};  // at a slot of another patch
+      if constexpr (Rule == Angle::Patched) {
+        if (any(first)) patches.find(*block_, first, layer);
+        waits = surface & found & !patches.hold(layer);
+      }
+      assign(first, run.begin, t_);
+      assign(surface & !waits, run.end, leave);
+      const Mask closed = found & crossed & ((!surface) | waits), moves = open & !waits;
       found = found | surface;
-      for (Layer<F>& l : layers_) l.step(open & (l.leave <= leave));
-      t_ = select(crossed, leave, t_);
-      const Mask last = open & (leave >= end_);
+      for (Layer<F>& l : layers_) l.step(moves & (l.leave <= leave));
+      t_ = select(crossed & moves, leave, t_);
+      const Mask last = moves & (leave >= end_);
       ended_ = ended_ | last;
       open = open & !closed & !last;
     }
     return found;
   }
 
+  Patches<F> patches;  // of the runs that were found last
+
  private:
+  const BlockView* block_;
   SlotBits slots_;
   Layer<F> layers_[3];
   F t_, end_;

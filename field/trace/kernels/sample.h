@@ -5,8 +5,11 @@ inline constexpr float rounding = 4e-6F;
 // Coordinates up to 1.7 in float are off by 2^-24 as t, as product and as sum; those of sources by 2^-24.
 inline constexpr float position_rounding = 2e-7F;
 
-// Of an angle that varies.
-template <bool Varied>
+// How alpha is given: one angle; one for each skeleton; by polynomials of its share of the range (share_patch.h).
+enum class Angle { One, Mean, Patched };
+
+// What a sample knows of an angle that varies.
+template <Angle Rule, class F>
 struct SampleShare {};
 
 // Its share of the range, as summed at a place near by or here; how that changes along the ray from there, and how it
@@ -18,14 +21,19 @@ struct SummedShare {
 
 // By how much the residual bends with the share, and by how much another share may lower it.
 template <>
-struct SampleShare<true> {
+struct SampleShare<Angle::Mean, float> {
   SummedShare summed;
   float residual_bend, residual_drop;
 };
+template <class F>
+struct SampleShare<Angle::Patched, F> {
+  OnWay<SharePatch::degree, F> share;  // its Taylor coefficients along the ray
+  F residual_bend;
+};
 
 // The field at one t, raised by the level's certified error, with what bounds it nearby.
-template <bool Varied, class F = float>
-struct SampleOf : SampleShare<Varied> {
+template <Angle Rule, class F = float>
+struct SampleOf : SampleShare<Rule, F> {
   F t;
   RaySums<F> s;
   F y;         // |G|
@@ -49,8 +57,9 @@ struct SampleOf : SampleShare<Varied> {
 };
 
 // The samples of some rays of a packet.
-inline void assign(Index16 mask, SampleOf<false, V16>& to, const SampleOf<false, V16>& from) {
-  using Sample = SampleOf<false, V16>;
+template <Angle Rule>
+inline void assign(Index16 mask, SampleOf<Rule, V16>& to, const SampleOf<Rule, V16>& from) {
+  using Sample = SampleOf<Rule, V16>;
   using Sums = RaySums<V16>;
   for (V16 Sample::*part :
        {&Sample::t, &Sample::y, &Sample::distance, &Sample::residual, &Sample::nominal, &Sample::margin, &Sample::raise,
@@ -63,4 +72,8 @@ inline void assign(Index16 mask, SampleOf<false, V16>& to, const SampleOf<false,
     assign(mask, to.s.dg[i], from.s.dg[i]);
   }
   assign(mask, to.sure, from.sure);
+  if constexpr (Rule == Angle::Patched) {
+    for (int i = 0; i <= SharePatch::degree; ++i) assign(mask, to.share.c[i], from.share.c[i]);
+    assign(mask, to.residual_bend, from.residual_bend);
+  }
 }

@@ -7,9 +7,9 @@ struct Doubt {
 };
 
 // Certified stretches beyond the front, nearest on top.
-template <bool Varied, class F>
+template <Angle Rule, class F>
 struct Islands {
-  using Sample = SampleOf<Varied, F>;
+  using Sample = SampleOf<Rule, F>;
   using Mask = MaskOf<F>;
 
   // Bisection halves the first gap before it adds an island: down to shortest_gap that is some 20 on top of the others.
@@ -61,22 +61,22 @@ struct Islands {
 
 // `front` is the end of the stretch from t0 that is certified outside; `inside` is the nearest sample known not to be
 // outside.
-template <bool Varied, class F = float>
+template <Angle Rule, class F = float>
 struct Search {
-  using Sample = SampleOf<Varied, F>;
+  using Sample = SampleOf<Rule, F>;
   using Mask = MaskOf<F>;
 
-  Marcher<Varied, F>& march;
+  Marcher<Rule, F>& march;
   F front, end;
   Mask have_last{}, have_inside{};
   bool exact;                            // the level is the field itself: it tells what is inside
   F undecided = all_lanes<F>(infinity);  // where the first stretch was passed over that could not be decided
   Doubt<F> doubt;                        // the last such stretch, not in `undecided` yet
   Sample last, inside;                   // last: the outside sample whose certificate reaches the front
-  Islands<Varied, F> islands;
+  Islands<Rule, F> islands;
   F nearest_island{};  // where it begins
 
-  Search(Marcher<Varied, F>& m, F t0, F t1)
+  Search(Marcher<Rule, F>& m, F t0, F t1)
       : march(m), front(t0), end(t1), exact(!(m.level.f_error > 0) && !(m.level.g_error > 0)), islands(m.ray) {}
 
   // Others begin in these lanes.
@@ -252,22 +252,22 @@ struct Search {
 };
 
 // The coarse level: it finds where the surface may be, at a fraction of the cost.
-template <bool Varied, class F = float>
+template <Angle Rule, class F = float>
 struct Approach {
   using Mask = MaskOf<F>;
 
-  Search<Varied, F>& s;
+  Search<Rule, F>& s;
   bool any_root;
   F next;                        // where to look
   Mask surely_inside{}, near{};  // of rays that have ended; others are outside all along
   F guess{};                     // of near ones, which are certified up to the front: close to the root
 
-  Approach(Search<Varied, F>& search, bool any) : s(search), any_root(any), next(0.5F * (s.front + s.end)) {}
+  Approach(Search<Rule, F>& search, bool any) : s(search), any_root(any), next(0.5F * (s.front + s.end)) {}
 
   // Another sample of each of these rays. Returns those that have not ended.
   Mask step(Mask open) {
     constexpr int most_samples = 200;
-    const SampleOf<Varied, F> p = s.march.sample(next, open);
+    const SampleOf<Rule, F> p = s.march.sample(next, open);
     const F before = s.front;
     s.record(open, p);
     open = open & !s.missed();
@@ -286,7 +286,7 @@ struct Approach {
   }
 
  private:
-  Mask find_inside(const SampleOf<Varied, F>& p, Mask open) {
+  Mask find_inside(const SampleOf<Rule, F>& p, Mask open) {
     const Mask inside = open & (p.residual <= 0.0F);
     if (!any(inside)) return inside;
     const Mask surely = inside & s.march.inside_at(p, F{});
@@ -312,22 +312,22 @@ struct RootOf {
 };
 
 // The fine level: it decides.
-template <bool Varied, class F = float>
+template <Angle Rule, class F = float>
 struct Decision {
   using Mask = MaskOf<F>;
 
-  Search<Varied, F>& s;
+  Search<Rule, F>& s;
   bool any_root;
   F guess;  // where to look
   IntOf<F> samples{};
   Mask hit{};  // of rays that have ended, at t
   F t{};
 
-  Decision(Search<Varied, F>& search, F first_guess, bool any) : s(search), any_root(any), guess(first_guess) {}
+  Decision(Search<Rule, F>& search, F first_guess, bool any) : s(search), any_root(any), guess(first_guess) {}
 
   // Another sample of each of these rays. Returns those that have not ended.
   Mask step(Mask open) {
-    const SampleOf<Varied, F> p = s.march.sample(guess, open);
+    const SampleOf<Rule, F> p = s.march.sample(guess, open);
     count(open, samples);
     const F before = s.front;
     s.record(open, p);

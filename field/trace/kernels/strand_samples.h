@@ -1,36 +1,5 @@
 // One strand as a cube sees it, and its share of a tensor of many. Part of block_kernels_<set>.cpp.
 
-// The 45 components x^i y^j z^k of a symmetric tensor of degree 8, three lanes left over. Powers above 8 are 0, and so
-// are the lanes that ask for them.
-struct TensorLayout {
-  alignas(64) int x[tensor_floats], y[tensor_floats], z[tensor_floats];
-};
-inline constexpr TensorLayout tensor_layout = [] {
-  TensorLayout l{};
-  int at = 0;
-  for (int i = 0; i <= 8; ++i)
-    for (int j = 0; i + j <= 8; ++j, ++at) {
-      l.x[at] = i;
-      l.y[at] = j;
-      l.z[at] = 8 - i - j;
-    }
-  for (; at < tensor_floats; ++at) l.x[at] = l.y[at] = l.z[at] = 9;
-  return l;
-}();
-
-inline Index16 load_index(const int* p) {
-  Index16 v;
-  __builtin_memcpy(&v, p, sizeof v);
-  return v;
-}
-
-// x^0 .. x^8 in lanes.
-inline V16 powers_of(float x) {
-  alignas(64) float v[lanes] = {1};
-  for (int i = 1; i <= 8; ++i) v[i] = v[i - 1] * x;
-  return load(v);
-}
-
 // Of one strand, at the places where a cube is probed: f and sum f_s u_s; how much a quadratic may be off.
 void strand_samples(const StrandQuery& query, StrandSamples& out) {
   const int m = query.exponent;
@@ -68,19 +37,37 @@ void strand_samples(const StrandQuery& query, StrandSamples& out) {
   out.ratio = radius * root_of(largest_lane(nearest));
 }
 
-// Adds f u^8, f, f^2 and f^2 with a direction of one strand to a tensor.
-void add_strand(const float sums[4], float* tensor) {
-  const float size2 = sums[1] * sums[1] + sums[2] * sums[2] + sums[3] * sums[3], f = sums[0];
-  tensor[45] += f;
-  tensor[46] += f * f;
-  if (!(size2 > 0)) return;
-  tensor[47] += f * f;
-  const float inverse = 1 / root_of(size2);
-  const V16 px = powers_of(sums[1] * inverse), py = powers_of(sums[2] * inverse), pz = powers_of(sums[3] * inverse);
+// Adds f u^8, f, f^2 and f^2 with a direction of one strand to tensors at the places, a place in each lane; not where f
+// is no number.
+void add_strand(const StrandSamples& samples, float* tensors) {
+  V16 s[4] = {};
+  for (int at = 0; at < strand_places; ++at)
+    for (int k = 0; k < 4; ++k) s[k][at] = samples.sums[at][k];
+  const V16 f = s[0], size2 = s[1] * s[1] + s[2] * s[2] + s[3] * s[3];
+  const auto finite = f - f == 0.0F, directed = finite & (size2 > 0.0F);
+  const V16 inverse = directed ? 1.0F / root_of(size2) : V16{};
+  V16 power[3][9];  // of the components of u
   for (int k = 0; k < 3; ++k) {
-    const V16 component = __builtin_shuffle(px, load_index(tensor_layout.x + lanes * k)) *
-                          __builtin_shuffle(py, load_index(tensor_layout.y + lanes * k)) *
-                          __builtin_shuffle(pz, load_index(tensor_layout.z + lanes * k));
-    for (int i = 0; i < lanes; ++i) tensor[k * lanes + i] += f * component[i];
+    power[k][0] = splat(1);
+    for (int i = 1; i <= 8; ++i) power[k][i] = power[k][i - 1] * (s[1 + k] * inverse);
+  }
+  V16 rows[tensor_floats];  // x^i y^j z^(8-i-j), j faster; the sums
+  V16* to = rows;
+  for (int i = 0; i <= 8; ++i)
+    for (int j = 0; i + j <= 8; ++j) *to++ = directed ? f * (power[0][i] * power[1][j] * power[2][8 - i - j]) : V16{};
+  *to++ = finite ? f : V16{};
+  *to++ = finite ? f * f : V16{};
+  *to++ = directed ? f * f : V16{};
+  for (int part = 0; part < tensor_floats; part += lanes) {
+    V16 columns[lanes];
+    for (int i = 0; i < lanes; ++i) columns[i] = rows[part + i];
+    transpose(columns);
+    for (int at = 0; at < strand_places; ++at) {
+      float* const sums = tensors + at * tensor_floats + part;
+      V16 sum;
+      __builtin_memcpy(&sum, sums, sizeof sum);
+      sum += columns[at];
+      __builtin_memcpy(sums, &sum, sizeof sum);
+    }
   }
 }

@@ -1,286 +1,215 @@
-// The angle from the directions of strands [Zanni et al. 2015, eq. 15], along a ray. Part of block_kernels_<set>.cpp.
+// The share of the range of angles from the directions of strands [Zanni et al. 2015, eq. 15], at sixteen places of a
+// cube. Part of block_kernels_<set>.cpp.
 
-// A number and its derivatives along some directions.
-template <int Slopes>
-struct Along {
-  float value = 0, slope[Slopes] = {};
+// A number at the places, and its derivatives by x, y and z.
+struct Slopes16 {
+  V16 value{}, slope[3] = {};
 
-  friend Along operator+(Along a, const Along& b) {
+  friend Slopes16 operator+(Slopes16 a, const Slopes16& b) {
     a.value += b.value;
-    for (int i = 0; i < Slopes; ++i) a.slope[i] += b.slope[i];
+    for (int e = 0; e < 3; ++e) a.slope[e] += b.slope[e];
     return a;
   }
-  friend Along operator*(const Along& a, const Along& b) {
-    Along product{a.value * b.value, {}};
-    for (int i = 0; i < Slopes; ++i) product.slope[i] = a.slope[i] * b.value + a.value * b.slope[i];
+  friend Slopes16 operator*(const Slopes16& a, const Slopes16& b) {
+    Slopes16 product{a.value * b.value, {}};
+    for (int e = 0; e < 3; ++e) product.slope[e] = a.slope[e] * b.value + a.value * b.slope[e];
     return product;
   }
 };
 
-template <int Slopes>
-struct AlongLanes {
-  V16 value{}, slope[Slopes] = {};
-};
-
-// The monomials 1, x, y, z, xx, yy, zz, xy, xz, yz at p.
-template <int Slopes>
-struct Quadratic {
-  Along<Slopes> m[quadratic_monomials];
-  Quadratic(const float p[3], const float (&directions)[Slopes][3]) {
-    Along<Slopes> x[3];
-    for (int k = 0; k < 3; ++k) {
-      x[k].value = p[k];
-      for (int i = 0; i < Slopes; ++i) x[k].slope[i] = directions[i][k];
-    }
-    m[0].value = 1;
-    for (int k = 0; k < 3; ++k) {
-      m[1 + k] = x[k];
-      m[4 + k] = x[k] * x[k];
-    }
-    m[7] = x[0] * x[1], m[8] = x[0] * x[2], m[9] = x[1] * x[2];
-  }
-  // 16 quadratics, whose coefficients are `stride` apart.
-  AlongLanes<Slopes> of(const float* coefficients, int stride) const {
-    AlongLanes<Slopes> sum;
-    for (int k = 0; k < quadratic_monomials; ++k) {
-      const V16 c = load(coefficients + k * stride);
-      sum.value += c * m[k].value;
-      for (int i = 0; i < Slopes; ++i) sum.slope[i] += c * m[k].slope[i];
-    }
-    return sum;
-  }
-};
-
-// Strands in lanes: f and u, the direction, of length 1 or 0. A strand whose mean direction has the length c turns by
-// rho = n / d sqrt(1 - c^2) / c at most, d the distance, as its segments' share of it changes.
-template <int Slopes>
-struct StrandLanes {
-  alignas(64) float sum[4][most_strands];  // f and sum f_s u_s, then f and u
-  alignas(64) float sum_slope[Slopes][4][most_strands];
-  alignas(64) float inverse2[most_strands];  // 1 / d^2
-  alignas(64) float turned[most_strands];    // sqrt(1 - c^2) / c
-  int count = 0;
-  float field = 0;                               // of all that are listed
-  float points = 0, point_bend = 0;              // of points: sums of f and of f b
-  Along<Slopes> numerator, denominator, before;  // over pairs; the field of those before
-
-  // Adds the rests, turns sums into directions.
-  void make_directions(const StrandLevel& level, const Quadratic<Slopes>& at) {
-    const int stride = (count + lanes - 1) / lanes * lanes;
-    V16 totals[12] = {};
-    for (int b = 0; b < stride; b += lanes) add_rests(level, at, b, stride, totals);
-    float t[16];
-    sum_lanes(totals, t);
-    field = t[0];
-  }
-
-  void add_rests(const StrandLevel& level, const Quadratic<Slopes>& at, int b, int stride, V16 (&totals)[12]) {
-    AlongLanes<Slopes> s[4];
-    for (int k = 0; k < 4; ++k) {
-      s[k] = at.of(level.rest + k * stride + b, 4 * stride);
-      s[k].value += load(sum[k] + b);
-      for (int i = 0; i < Slopes; ++i) s[k].slope[i] += load(sum_slope[i][k] + b);
-    }
-    const auto counts = s[0].value > 0.0F;
-    V16 size2{};
-    for (int k = 0; k < 4; ++k) {
-      s[k].value = counts ? s[k].value : V16{};
-      for (int i = 0; i < Slopes; ++i) s[k].slope[i] = counts ? s[k].slope[i] : V16{};
-      if (k > 0) size2 += s[k].value * s[k].value;
-    }
-    const V16 inverse = size2 > 0.0F ? 1.0F / root_of(size2) : V16{};
-    for (int k = 1; k < 4; ++k) s[k].value = s[k].value * inverse;
-    for (int i = 0; i < Slopes; ++i) {
-      V16 along{};
-      for (int k = 1; k < 4; ++k) along += s[k].value * s[k].slope[i];
-      for (int k = 1; k < 4; ++k) s[k].slope[i] = (s[k].slope[i] - s[k].value * along) * inverse;
-    }
-    const V16 near = larger(load(inverse2 + b), splat(level.far_inverse2));
-    const V16 f = s[0].value, ff = f * f, c2 = larger(splat(0.0025F), size2 / larger(ff, splat(1e-37F)));
-    const V16 turned2 = size2 > 0.0F ? larger(V16{}, 1.0F / c2 - 1.0F) : V16{};
-    const V16 turn = root_of(turned2);
-    __builtin_memcpy(inverse2 + b, &near, sizeof near);
-    __builtin_memcpy(turned + b, &turn, sizeof turn);
-    totals[0] += f;
-    for (int k = 0; k < 4; ++k) {
-      __builtin_memcpy(sum[k] + b, &s[k].value, sizeof(V16));
-      for (int i = 0; i < Slopes; ++i) __builtin_memcpy(sum_slope[i][k] + b, &s[k].slope[i], sizeof(V16));
-    }
-  }
-
-  // One more strand in the sum of f_i f_j over pairs.
-  void add_pairs(const Along<Slopes>& f) {
-    denominator = denominator + f * before;
-    before = before + f;
-  }
-  void add_all_pairs() {
-    for (int i = 0; i < count; ++i) {
-      Along<Slopes> f{sum[0][i], {}};
-      for (int k = 0; k < Slopes; ++k) f.slope[k] = sum_slope[k][0][i];
-      add_pairs(f);
-    }
-  }
-
-  // sum_j f_j (u_j . u)^8 over lanes of fields and directions, with what they and u change.
-  struct Angles {
-    V16 value{}, slope[Slopes] = {};
-    void add(const V16 (&u)[3], const float (&own)[3], const float (&own_slope)[Slopes][3], const V16& f,
-             const V16 (&f_slope)[Slopes], const V16 (&turns)[Slopes]) {
-      const V16 g = u[0] * own[0] + u[1] * own[1] + u[2] * own[2], g2 = g * g, g4 = g2 * g2, g8 = g4 * g4;
-      const V16 steep = f * (8.0F * g4 * g2 * g);
-      value += f * g8;
-      for (int i = 0; i < Slopes; ++i) {
-        const float* d = own_slope[i];
-        slope[i] += f_slope[i] * g8 + steep * (turns[i] + u[0] * d[0] + u[1] * d[1] + u[2] * d[2]);
-      }
-    }
-  };
-
-  // sum of f_i f_j (u_i . u_j)^8 over pairs of strands, and of strands and the axes that stand for the far ones.
-  void add_angles(const StrandLevel& level, const AlongLanes<Slopes> (&far)[3]) {
-    constexpr Index16 lane{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    V16 totals[12] = {};
-    for (int j = 0; j < count; ++j) {
-      const float own[3] = {sum[1][j], sum[2][j], sum[3][j]};
-      float own_slope[Slopes][3];
-      for (int i = 0; i < Slopes; ++i)
-        for (int k = 0; k < 3; ++k) own_slope[i][k] = sum_slope[i][1 + k][j];
-      Angles angles;
-      V16 f_slope[Slopes], turns[Slopes];
-      for (int b = 0; b <= j; b += lanes) {
-        const V16 u[3] = {load(sum[1] + b), load(sum[2] + b), load(sum[3] + b)};
-        const auto earlier = lane < j - b;
-        for (int i = 0; i < Slopes; ++i) {
-          const auto& d = sum_slope[i];
-          f_slope[i] = earlier ? load(d[0] + b) : V16{};
-          turns[i] = load(d[1] + b) * own[0] + load(d[2] + b) * own[1] + load(d[3] + b) * own[2];
-        }
-        angles.add(u, own, own_slope, earlier ? load(sum[0] + b) : V16{}, f_slope, turns);
-      }
-      for (V16& t : turns) t = V16{};
-      for (int k = 0; k < 3; ++k) {
-        const float* axes = level.axes + k * lanes;
-        const V16 u[3] = {load(axes), load(axes + tensor_floats), load(axes + 2 * tensor_floats)};
-        angles.add(u, own, own_slope, far[k].value, far[k].slope, turns);
-      }
-      totals[0] += angles.value * sum[0][j];
-      for (int i = 0; i < Slopes; ++i) totals[1 + i] += angles.slope[i] * sum[0][j] + angles.value * sum_slope[i][0][j];
-    }
-    float t[16];
-    sum_lanes(totals, t);
-    numerator.value = t[0];
-    for (int i = 0; i < Slopes; ++i) numerator.slope[i] = t[1 + i];
-  }
-};
-
-template <int Slopes>
-struct StrandProbe {
+// The coordinates of the places.
+struct Places16 {
   V16 p[3];
-  float direction[Slopes][3];
+
+  Places16(const float (&center)[3], float half) {
+    for (int lane = 0; lane < lanes; ++lane)
+      for (int k = 0; k < 3; ++k) p[k][lane] = center[k] + half * strand_place[lane < strand_places ? lane : 0][k];
+  }
+  // A quadratic whose coefficients for 1, x, y, z, xx, yy, zz, xy, xz, yz are `stride` apart.
+  Slopes16 quadratic(const float* coefficients, int stride) const {
+    float c[quadratic_monomials];
+    for (int i = 0; i < quadratic_monomials; ++i) c[i] = coefficients[i * stride];
+    const V16 x = p[0], y = p[1], z = p[2];
+    return {
+        c[0] + (c[1] + c[4] * x + c[7] * y + c[8] * z) * x + (c[2] + c[5] * y + c[9] * z) * y + (c[3] + c[6] * z) * z,
+        {c[1] + 2 * c[4] * x + c[7] * y + c[8] * z, c[2] + 2 * c[5] * y + c[7] * x + c[9] * z,
+         c[3] + 2 * c[6] * z + c[8] * x + c[9] * y}};
+  }
 };
 
-// Sums over the groups of one strand: f and sum f_s u_s, the same of slopes without the factor -m, the nearest.
-template <int Exponent, int Slopes>
-inline void add_strand_groups(const float* group, const float* direction, int groups, int exponent,
-                              const StrandProbe<Slopes>& probe, float (&s)[16], float& inverse2) {
-  static_assert(Slopes == 1 || Slopes == 3);
-  V16 a[12] = {}, more[4] = {}, nearest{};
-  for (int k = 0; k < groups; ++k, group += floats_per_group, direction += 3 * lanes) {
-    const V16 dx = probe.p[0] - load(group), dy = probe.p[1] - load(group + 16), dz = probe.p[2] - load(group + 32);
-    const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz);
-    const V16 share = load(group + 48), w = field_of<Exponent>(share, load(group + 64), inv, exponent), w2 = w * inv;
-    const V16 u[3] = {load(direction), load(direction + 16), load(direction + 32)};
-    nearest = larger(nearest, share > 0.0F ? inv : V16{});
-    a[0] += w;
-    for (int i = 0; i < 3; ++i) a[1 + i] += w * u[i];
-    for (int i = 0; i < Slopes; ++i) {
-      const float* e = probe.direction[i];
-      const V16 slope = w2 * (dx * e[0] + dy * e[1] + dz * e[2]);
-      V16* to = i < 2 ? a + 4 + 4 * i : more;
-      to[0] += slope;
-      for (int j = 0; j < 3; ++j) to[1 + j] += slope * u[j];
+// One strand: f and its direction u, of length 1 or 0; then the derivatives of N = sum f_i f_j (u_i . u_j)^8 by them.
+struct Strand16 {
+  Slopes16 f, u[3];
+  V16 by_f{}, by_u[3] = {};
+};
+static_assert(sizeof(Strand16) == floats_per_strand * sizeof(float));
+
+// Adds f and sum f_s u_s over the groups of a strand to s.
+template <int Exponent>
+inline void add_strand_groups(const float* group, const float* direction, int groups, int exponent, const Places16& at,
+                              Slopes16 (&s)[4]) {
+  V16 value[4] = {}, slope[3][4] = {};
+  for (int k = 0; k < groups; ++k, group += floats_per_group, direction += 3 * lanes)
+    for (int i = 0; i < lanes; ++i) {
+      if (!(group[48 + i] > 0)) continue;  // not used
+      const V16 d[3] = {at.p[0] - group[i], at.p[1] - group[16 + i], at.p[2] - group[32 + i]};
+      const V16 inv = 1.0F / (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+      const V16 w = field_of<Exponent>(splat(group[48 + i]), splat(group[64 + i]), inv, exponent), w2 = w * inv;
+      const float u[3] = {direction[i], direction[16 + i], direction[32 + i]};
+      value[0] += w;
+      for (int j = 0; j < 3; ++j) value[1 + j] += w * u[j];
+      for (int e = 0; e < 3; ++e) {
+        const V16 change = w2 * d[e];
+        slope[e][0] += change;
+        for (int j = 0; j < 3; ++j) slope[e][1 + j] += change * u[j];
+      }
     }
+  const float m = static_cast<float>(exponent);
+  for (int j = 0; j < 4; ++j) {
+    s[j].value += value[j];
+    for (int e = 0; e < 3; ++e) s[j].slope[e] -= m * slope[e][j];
   }
-  sum_lanes(a, s);
-  if constexpr (Slopes > 1) {
-    V16 rest[12] = {more[0], more[1], more[2], more[3]};
-    float t[16];
-    sum_lanes(rest, t);
-    for (int i = 0; i < 4; ++i) s[12 + i] = t[i];
-  }
-  inverse2 = largest_lane(nearest);
 }
 
-template <int Exponent, int Slopes>
-inline void add_near_strands(const FieldLevel& level, int exponent, const StrandProbe<Slopes>& probe,
-                             StrandLanes<Slopes>& out) {
+inline void set_strand(const Slopes16 (&s)[4], Strand16& out) {
+  const auto counts = s[0].value > 0.0F;
+  out = {};
+  out.f.value = counts ? s[0].value : V16{};
+  for (int e = 0; e < 3; ++e) out.f.slope[e] = counts ? s[0].slope[e] : V16{};
+  const V16 size2 = s[1].value * s[1].value + s[2].value * s[2].value + s[3].value * s[3].value;
+  const V16 inverse = (counts & (size2 > 0.0F)) ? 1.0F / root_of(size2) : V16{};
+  for (int k = 0; k < 3; ++k) out.u[k].value = s[1 + k].value * inverse;
+  for (int e = 0; e < 3; ++e) {
+    V16 along{};
+    for (int k = 0; k < 3; ++k) along += out.u[k].value * s[1 + k].slope[e];
+    for (int k = 0; k < 3; ++k) out.u[k].slope[e] = (s[1 + k].slope[e] - out.u[k].value * along) * inverse;
+  }
+}
+
+template <int Exponent>
+inline void find_strands(const FieldLevel& level, int exponent, const Places16& at, Strand16* out) {
   const StrandLevel& strands = *level.strands;
   const float *group = level.sources, *direction = strands.directions;
-  const float m = static_cast<float>(exponent);
-  out.count = strands.count;
-  for (int j = 0; j < (out.count + lanes - 1) / lanes * lanes; ++j) {
-    const int groups = j < out.count ? strands.groups[j] : 0;
-    float s[16] = {};
-    out.inverse2[j] = 0;
-    if (groups > 0) add_strand_groups<Exponent>(group, direction, groups, exponent, probe, s, out.inverse2[j]);
-    group += groups * floats_per_group;
-    direction += groups * 3 * lanes;
-    for (int k = 0; k < 4; ++k) {
-      out.sum[k][j] = s[k];
-      for (int i = 0; i < Slopes; ++i) out.sum_slope[i][k][j] = -m * s[4 + 4 * i + k];
-    }
+  const int stride = (strands.count + lanes - 1) / lanes * lanes;
+  for (int j = 0; j < strands.count; ++j) {
+    Slopes16 s[4];
+    for (int k = 0; k < 4; ++k) s[k] = at.quadratic(strands.rest + k * stride + j, 4 * stride);
+    add_strand_groups<Exponent>(group, direction, strands.groups[j], exponent, at, s);
+    set_strand(s, out[j]);
+    group += strands.groups[j] * floats_per_group;
+    direction += strands.groups[j] * 3 * lanes;
   }
 }
 
-// Points are strands by themselves, without a direction.
-template <int Slopes>
-inline void add_points(const FieldLevel& level, int degree, const StrandProbe<Slopes>& probe,
-                       StrandLanes<Slopes>& out) {
-  const float* group = point_sources(level);
-  const float m = static_cast<float>(degree - 1);
-  for (int k = 0; k < level.point_groups; ++k, group += floats_per_group) {
-    const V16 dx = probe.p[0] - load(group), dy = probe.p[1] - load(group + 16), dz = probe.p[2] - load(group + 32);
-    const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz),
-              w = field_of<0>(load(group + 48), load(group + 64), inv, degree - 1);
-    for (int i = 0; i < lanes; ++i) {
-      if (!(w[i] > 0)) continue;
-      Along<Slopes> f{w[i], {}};
-      for (int j = 0; j < Slopes; ++j) {
-        const float* e = probe.direction[j];
-        f.slope[j] = -m * w[i] * inv[i] * (dx[i] * e[0] + dy[i] * e[1] + dz[i] * e[2]);
-      }
-      out.add_pairs(f);
-      out.points += w[i];
-      out.point_bend += w[i] * inv[i];
-    }
-  }
-}
-
-// What a place sees of the strands, with derivatives along some directions.
-template <int Slopes>
-struct StrandsAt {
-  StrandLanes<Slopes> near;
-  AlongLanes<Slopes> far[3];  // StrandLevel::far
-
-  StrandsAt(const FieldLevel& level, int degree, const float p[3], const float (&directions)[Slopes][3]) {
-    StrandProbe<Slopes> probe{{splat(p[0]), splat(p[1]), splat(p[2])}, {}};
-    for (int i = 0; i < Slopes; ++i)
-      for (int k = 0; k < 3; ++k) probe.direction[i][k] = directions[i][k];
-    const Quadratic<Slopes> at(p, directions);
-    if (degree == 4) add_near_strands<4>(level, degree, probe, near);
-    else add_near_strands<0>(level, degree, probe, near);
-    near.make_directions(*level.strands, at);
-    for (int k = 0; k < 3; ++k) far[k] = at.of(level.strands->far + k * lanes, tensor_floats);
-    near.before = sum_of_far(0);
-    near.add_all_pairs();
-    add_points(level, degree, probe, near);
-  }
-
-  // After the 45 axes: the field of the far strands, and over their pairs, see StrandLevel::far.
-  Along<Slopes> sum_of_far(int k) const {
-    const int lane = 13 + k;
-    Along<Slopes> s{far[2].value[lane], {}};
-    for (int i = 0; i < Slopes; ++i) s.slope[i] = far[2].slope[i][lane];
-    return s;
+// g^7 and g^8
+struct Powers {
+  V16 seventh, eighth;
+  explicit Powers(const V16& g) {
+    const V16 g2 = g * g, g4 = g2 * g2;
+    seventh = g4 * g2 * g;
+    eighth = g4 * g4;
   }
 };
+
+// N over the pairs of strands; returns its value.
+inline V16 add_pairs(Strand16* strands, int count) {
+  V16 sum{};
+  for (int j = 1; j < count; ++j) {
+    Strand16& b = strands[j];
+    for (int i = 0; i < j; ++i) {
+      Strand16& a = strands[i];
+      const Powers g(a.u[0].value * b.u[0].value + a.u[1].value * b.u[1].value + a.u[2].value * b.u[2].value);
+      const V16 ff = a.f.value * b.f.value, steep = ff * (8.0F * g.seventh);
+      sum += ff * g.eighth;
+      a.by_f += b.f.value * g.eighth;
+      b.by_f += a.f.value * g.eighth;
+      for (int k = 0; k < 3; ++k) {
+        a.by_u[k] += steep * b.u[k].value;
+        b.by_u[k] += steep * a.u[k].value;
+      }
+    }
+  }
+  return sum;
+}
+
+// N over strands and the axes that stand for the far ones; adds what the weights of the axes change.
+inline void add_axes(const StrandLevel& level, const Places16& at, Strand16* strands, Slopes16& sum) {
+  Slopes16 weight[most_axes];
+  for (int k = 0; k < most_axes; ++k) weight[k] = at.quadratic(level.far + k, tensor_floats);
+  for (int j = 0; j < level.count; ++j) {
+    Strand16& s = strands[j];
+    Slopes16 with;
+    V16 by_u[3] = {};
+    for (int k = 0; k < most_axes; ++k) {
+      const float v[3] = {level.axes[k], level.axes[tensor_floats + k], level.axes[2 * tensor_floats + k]};
+      const Powers g(s.u[0].value * v[0] + s.u[1].value * v[1] + s.u[2].value * v[2]);
+      with.value += weight[k].value * g.eighth;
+      for (int e = 0; e < 3; ++e) with.slope[e] += weight[k].slope[e] * g.eighth;
+      const V16 steep = weight[k].value * g.seventh;
+      for (int i = 0; i < 3; ++i) by_u[i] += steep * v[i];
+    }
+    sum.value += s.f.value * with.value;
+    for (int e = 0; e < 3; ++e) sum.slope[e] += s.f.value * with.slope[e];
+    s.by_f += with.value;
+    for (int i = 0; i < 3; ++i) s.by_u[i] += 8.0F * s.f.value * by_u[i];
+  }
+}
+
+// sum f_i f_j over pairs, one strand after the other.
+struct PairsOfFields {
+  Slopes16 before, sum;
+  void add(const Slopes16& f) {
+    sum = sum + f * before;
+    before = before + f;
+  }
+};
+
+// Points are strands by themselves, without a direction.
+inline void add_points(const FieldLevel& level, int degree, const Places16& at, PairsOfFields& pairs) {
+  const float* group = point_sources(level);
+  const float m = static_cast<float>(degree - 1);
+  for (int k = 0; k < level.point_groups; ++k, group += floats_per_group)
+    for (int i = 0; i < lanes; ++i) {
+      if (!(group[48 + i] > 0)) continue;
+      const V16 d[3] = {at.p[0] - group[i], at.p[1] - group[16 + i], at.p[2] - group[32 + i]};
+      const V16 inv = 1.0F / (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+      Slopes16 f{field_of<0>(splat(group[48 + i]), splat(group[64 + i]), inv, degree - 1), {}};
+      for (int e = 0; e < 3; ++e) f.slope[e] = -m * f.value * inv * d[e];
+      pairs.add(f);
+    }
+}
+
+void strand_shares(const FieldLevel& level, int degree, const float (&center)[3], float half, float* memory,
+                   StrandShares& out) {
+  const StrandLevel& far = *level.strands;
+  auto* const strands = static_cast<Strand16*>(static_cast<void*>(memory));
+  const Places16 at(center, half);
+  if (degree == 4) find_strands<4>(level, degree, at, strands);
+  else find_strands<0>(level, degree, at, strands);
+  Slopes16 numerator;
+  numerator.value = add_pairs(strands, far.count);
+  add_axes(far, at, strands, numerator);
+  PairsOfFields pairs;
+  pairs.before = at.quadratic(far.far + 45, tensor_floats);
+  for (int j = 0; j < far.count; ++j) {
+    const Strand16& s = strands[j];
+    pairs.add(s.f);
+    for (int e = 0; e < 3; ++e) {
+      V16 turn{};
+      for (int k = 0; k < 3; ++k) turn += s.by_u[k] * s.u[k].slope[e];
+      numerator.slope[e] += s.by_f * s.f.slope[e] + turn;
+    }
+  }
+  add_points(level, degree, at, pairs);
+  const Slopes16 above = numerator + numerator + at.quadratic(far.far + 46, tensor_floats),
+                 below = pairs.sum + pairs.sum + at.quadratic(far.far + 47, tensor_floats);
+  // One strand alone: any angle will do, see directional_alpha.h.
+  const auto some = below.value > 1e-36F;
+  const V16 inverse = some ? 1.0F / below.value : V16{};
+  const V16 share = some ? smaller(splat(1), larger(V16{}, above.value * inverse)) : splat(1);
+  __builtin_memcpy(out.share, &share, sizeof share);
+  for (int e = 0; e < 3; ++e) {
+    const V16 slope = (above.slope[e] - share * below.slope[e]) * inverse;
+    __builtin_memcpy(out.slope[e], &slope, sizeof slope);
+  }
+}

@@ -1,11 +1,11 @@
-// The angle of a place, where alpha varies. Part of block_kernels_<set>.cpp.
+// The angle of a place, where each skeleton has one. Part of block_kernels_<set>.cpp.
 
 struct ShareRange {
   float low, high;
 };
 
 struct VariedAngle {
-  using Sample = SampleOf<true>;
+  using Sample = SampleOf<Angle::Mean>;
 
   const BlockView& block;
   const FieldLevel& level;
@@ -33,7 +33,7 @@ struct VariedAngle {
     p.residual_drop = max_of(0, p.nominal - min_of(low, high));
     p.s.f += level.f_error;
     p.sure = true;
-    p.residual = margin_within(p, p.s.f, p.y, 0);
+    p.residual = margin_within(p, p.s.f, p.y, 0, true);
   }
 
   // Else any share that may be may hold.
@@ -42,7 +42,7 @@ struct VariedAngle {
   // Not where both ends of the range tell nearly the same of the place.
   bool needs_share(float low, float high) const {
     constexpr float apart = 1.5F;
-    return (level.strands != nullptr || level.angle != nullptr) &&
+    return level.angle != nullptr &&
            !(min_of(abs_of(low), abs_of(high)) > apart * abs_of(high - low) && low * high > 0);
   }
 
@@ -51,15 +51,8 @@ struct VariedAngle {
     constexpr float known_to = 1e-5F;  // as sums of floats are in any case
     const float h = p.t - last.t;
     if (last.bend * h * h < known_to && abs_of(h) < 0.02F * last.distance) return last;
-    last = level.angle != nullptr ? mean_share(p, at) : share_of_strands(p, at);
+    last = mean_share(p, at);
     return last;
-  }
-
-  SummedShare share_of_strands(const Sample& p, const OnRay<float> (&at)[3]) const {
-    const float place[3] = {at[0].at, at[1].at, at[2].at};
-    const float along[1][3] = {{ray.direction[0], ray.direction[1], ray.direction[2]}};
-    const ShareValue<1> value = strand_share(level, block.degree, place, along);
-    return {value.share, value.slope[0], value.bend, p.t, p.distance};
   }
 
   // A / f of angle_field.h. With s the share here, D = A - s f is 0 here: bounds of D (B3 of tracing.md, for A and f)
@@ -80,14 +73,13 @@ struct VariedAngle {
   float share_error(const Sample& p) const {
     constexpr float rounded = 1e-5F;
     if (!p.sure) return 0;
-    if (level.angle == nullptr) return rounded;
     const float least = p.s.f - 2 * level.f_error;
     return least > 0 ? (level.angle->f_error + p.summed.share * level.f_error) / least + rounded : 1;
   }
 
   // The shares on [t, t + h]. With q the largest distance from where they were summed, over that to the nearest source
   // there, fields are at most (1 - q)^-n times what they are there, their second derivatives (1 - q)^-(n + 2), and of
-  // the quotient of such a change and a sum of f, or of what ShareBounds tells, at most (1 - q)^-(6 n + 2) remains.
+  // the quotient of such a change and a sum of f at most (1 - q)^-(6 n + 2) remains.
   ShareRange shares_until(const Sample& p, float h) const {
     const SummedShare& from = p.summed;
     const float begin = p.t - from.t, end = begin + h, longest = max_of(abs_of(begin), abs_of(end));
@@ -102,7 +94,7 @@ struct VariedAngle {
 
   // Marcher::margin(), nominal_margin_at() and nominally_inside() for all shares on [t, t + h]: C is largest, and
   // least, at the ends of a range.
-  float margin_within(const Sample& p, float x, float y, float h) const {
+  float margin_within(const Sample& p, float x, float y, float h, bool) const {
     if (!p.sure) return nominal_within(p, x, y, h);
     x *= p.raise;
     y *= p.raise;

@@ -1,0 +1,73 @@
+// The angle of a place, where the share of the range is a polynomial on each part of the way. Part of
+// block_kernels_<set>.cpp.
+
+template <class F>
+struct PatchedAngle {
+  using Sample = SampleOf<Angle::Patched, F>;
+  using Mask = MaskOf<F>;
+
+  const BlockView& block;
+  const FieldLevel& level;
+  const ShareOnRun<F>& run;
+
+  // As Marcher::judge(), with the angle of the place.
+  void judge(Sample& p, F y, F dy) const {
+    p.share = run.at(p.t);
+    const AngleRows<F> rows(block.tables, p.share.c[0]);
+    F share_weight{};
+    p.curve = p.v = p.x_weight = p.y_weight = p.v_slope = F{};
+    for (int i = 0; i < 4; ++i) {
+      const RowPlace<F> row = rows.place(i, p.s.f, y);
+      const F w = rows.weight[i], value = row.value(),
+              slope = select(row.at > 0.0F, row.slope() * row.inverse_step, F{});
+      p.curve += w * value;
+      p.v += w * row.v;
+      p.x_weight += w * (row.sine + slope * row.cosine);
+      p.y_weight += w * (row.cosine - slope * row.sine);
+      share_weight += rows.slope[i] * (value - row.v);
+      p.v_slope += w * (p.s.df * row.sine + dy * row.cosine) + rows.slope[i] * p.share.c[1] * row.v;
+    }
+    p.slope = share_weight * p.share.c[1] - p.x_weight * p.s.df - p.y_weight * dy;
+    p.nominal = p.curve - p.v;
+    p.residual_bend = abs_of(share_weight * p.share.c[2]);
+    p.s.f += level.f_error;
+    p.sure = !Mask{};
+    p.residual = margin_within(p, p.s.f, p.y, F{}, !Mask{});
+  }
+
+  struct Range {
+    F low, high;
+  };
+
+  // The shares on [t, t + h]. `error`: by which rounding may be off.
+  Range shares_until(const Sample& p, F h, F error) const {
+    const F* c = p.share.c;
+    const F end = c[1] * h, hh = h * h, bend = (abs_of(c[2]) + abs_of(c[3] * h) + abs_of(c[4]) * hh) * hh + error;
+    return {c[0] + min_of(0.0F, end) - bend, c[0] + max_of(0.0F, end) + bend};
+  }
+
+  // Marcher::margin(), nominal_margin_at() and nominally_inside() for all shares on [t, t + h].
+  F margin_within(const Sample& p, F x, F y, F h, Mask asked) const {
+    constexpr float rounded = 1e-5F;
+    const F raised_x = x * p.raise, raised_y = y * p.raise;
+    const Mask right = right_of_reference(raised_x, raised_y, block.degree);
+    const Range shares = shares_until(p, h, all_lanes<F>(rounded));
+    const F worst = select(right, shares.high, shares.low);
+    F margin = level.f_error > 0 ? margin_of_next_row(block.tables, right, worst, raised_x, raised_y)
+                                 : AngleRows<F>(block.tables, worst).margin(raised_x, raised_y);
+    const Mask as_summed = asked & !p.sure;
+    if (any(as_summed)) margin = select(as_summed, nominal_within(p, x, y, h), margin);
+    return margin;
+  }
+  F nominal_within(const Sample& p, F x, F y, F h) const {
+    const Range shares = shares_until(p, h, F{});
+    const Mask right = right_of_reference(x, y, block.degree);
+    return AngleRows<F>(block.tables, select(right, shares.high, shares.low)).nominal_margin(x, y);
+  }
+  Mask inside_within(const Sample& p, F x, F y, F h) const {
+    const Range shares = shares_until(p, h, F{});
+    const Mask right = right_of_reference(x, y, block.degree);
+    return (x > block.iso.critical) |
+           AngleRows<F>(block.tables, select(right, shares.low, shares.high)).nominally_inside(x, y);
+  }
+};

@@ -1,0 +1,69 @@
+// The share of the range of angles in the parts of a block, where directions of strands give it.
+//
+// What strands.h tells of a place is fitted by polynomials, and these are what is traced: their bounds along a ray are
+// exact, they cost little, and the coarse level can use them as well. The parts are octants of the block, or octants of
+// those down to its slots where the fit is not good enough; each is made when the first ray comes by, and is a function
+// of the block alone.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <memory>
+
+#include "field/math/vec3.h"
+#include "field/trace/block_kernels.h"
+#include "field/trace/lazy.h"
+
+namespace marrow {
+
+/// A share, its gradient, and what bounds how it bends: |share(x + v) - share(x) - gradient . v| <= bend |v|^2 within
+/// the part. In the coordinates of the block.
+struct ShareAt {
+  double share = 0;
+  Vec3d gradient;
+  double bend = 0;
+  double error = 0;  ///< as SharePatch::error
+};
+ShareAt share_at(const SharePatch&, const Vec3d& place);
+
+/// Those of one block. Safe to use from many threads.
+class SharePatches {
+ public:
+  /// The part that holds a slot, given by its layers, 0 to 7. `fine` is asked for the fine level when a part is made.
+  template <class Fine>
+  const SharePatch& at(const int (&layer)[3], const BlockKernels& kernels, int degree, const Fine& fine) const;
+
+  std::size_t bytes() const { return count_.load(std::memory_order_relaxed) * sizeof(Part); }
+  /// The largest error of any that was made, see SharePatch.
+  double error() const { return static_cast<double>(error_.load(std::memory_order_relaxed)); }
+
+ private:
+  struct Part;
+  using Eight = std::array<Lazy<Part>, 8>;
+  struct Part {
+    SharePatch patch;
+    std::unique_ptr<const Eight> parts;  // where the patch does not tell the share well enough
+  };
+  std::unique_ptr<const Part> make(const BlockKernels&, int degree, const FieldLevel& fine, const int (&layer)[3],
+                                   int layers_log2) const;
+
+  Eight octants_;
+  mutable std::atomic<std::size_t> count_ = 0;
+  mutable std::atomic<float> error_ = 0;
+};
+
+template <class Fine>
+const SharePatch& SharePatches::at(const int (&layer)[3], const BlockKernels& kernels, int degree,
+                                   const Fine& fine) const {
+  const Eight* eight = &octants_;
+  for (int log2 = 2;; --log2) {
+    const int octant = (layer[0] >> log2 & 1) | (layer[1] >> log2 & 1) << 1 | (layer[2] >> log2 & 1) << 2;
+    const Part& part =
+        (*eight)[static_cast<std::size_t>(octant)].get([&] { return make(kernels, degree, fine(), layer, log2); });
+    if (part.parts == nullptr) return part.patch;
+    eight = part.parts.get();
+  }
+}
+
+}  // namespace marrow
