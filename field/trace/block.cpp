@@ -8,6 +8,7 @@
 #include "field/trace/level_cache.h"
 #include "field/trace/level_recipe.h"
 #include "field/trace/serial.h"
+#include "field/trace/stranded_level.h"
 
 namespace marrow {
 namespace {
@@ -110,7 +111,12 @@ std::uint64_t Block::surface(int octant) const {
 }
 
 const SharePatch& Block::patch(const int (&layer)[3]) const {
-  return patches_->at(layer, context_.kernels, context_.degree, [&]() -> const FieldLevel& { return fine().level; });
+  thread_local LevelCache cache;
+  return patches_->at(layer, context_.kernels, context_.degree, [&]() -> const BlockLevel& {
+    return cache.get(serial_, [&](LevelBuffer& buffer) {
+      return write_stranded_level(make_stranded_level(context_, cell_), in(buffer));
+    });
+  });
 }
 
 ShareAt Block::share(const Vec3d& place) const {

@@ -46,9 +46,9 @@ struct FieldLevel {
   float f_error = 0, g_error = 0;        ///< added to f and |G| wherever "outside" is to be proved
   float far_slope = 0, far_g_slope = 0;  ///< |derivative| of the far f and G along any line, at most
   float far_bend = 0, far_g_bend = 0;    ///< the same of |second derivative| / 2
-  // Where alpha varies one of these, or on a coarse level none: then any angle of the range may hold.
   const FieldLevel* angle = nullptr;     ///< the field A of angle_field.h, with its f_error
-  const StrandLevel* strands = nullptr;  ///< the strands, whose near sources are those of the level, in their order
+  const StrandLevel* strands = nullptr;  ///< of the level that patches are made from: the strands, whose near sources
+                                         ///< are those of the level, in their order
 };
 
 /// The share of the range of angles in a part of a block, where directions give it: a polynomial in (x - center) /
@@ -58,7 +58,7 @@ struct alignas(64) SharePatch {
   float coefficient[coefficients] = {};
   float center[3] = {0, 0, 0}, inverse_half = 1;
   int layers_log2 = 2;  ///< the part is so many of the eight layers of slots wide
-  float error = 0;      ///< what it may be off from what it was fitted to: an estimate
+  float error = 0;      ///< what it may be off from the exact share: an estimate
 };
 inline constexpr int floats_per_patch = sizeof(SharePatch) / sizeof(float);
 

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "field/trace/source_emitter.h"
-#include "field/trace/stranded_level.h"
 
 namespace marrow {
 namespace {
@@ -73,7 +72,6 @@ BlockLevel coarse_level(const Block::Context& context, const CellTree::Cell& cel
 
 BlockLevel fine_level(const Block::Context& context, const CellTree::Cell& cell, const Allocate& allocate,
                       std::vector<PieceRule>* rules) {
-  if (context.strands != nullptr) return write_stranded_level(make_stranded_level(context, cell), allocate);
   return write_level(make_level(context, context.fine, context.pieces, context.tree.surroundings(cell), cell,
                                 context.fine.far_degree(), rules),
                      make_angle_level(context, context.fine, cell, context.fine.far_degree()), Errors::Stated,

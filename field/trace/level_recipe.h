@@ -17,9 +17,7 @@ struct LevelRecipe {
 };
 
 /// Whether the levels of such blocks can be told by recipes.
-inline bool have_recipes(const Block::Context& context) {
-  return context.angle == nullptr && context.strands == nullptr;
-}
+inline bool have_recipes(const Block::Context& context) { return context.angle == nullptr; }
 
 LevelRecipe recipe_of(const BlockLevel&, std::span<const PieceRule>, const Allocate&);
 BlockLevel level_from(const LevelRecipe&, const Block::Context&, const CellTree::Cell&, const Allocate&);

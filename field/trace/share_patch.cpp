@@ -108,11 +108,11 @@ float* memory_for(int strands) {
   return buffer.allocate(static_cast<std::size_t>(strands) * floats_per_strand);
 }
 
-Data data_of(const BlockKernels& kernels, int degree, const FieldLevel& fine, const SharePatch& patch) {
+Data data_of(const BlockKernels& kernels, int degree, const FieldLevel& level, const SharePatch& patch) {
   Data data{};
   const float half = 1 / patch.inverse_half;
   StrandShares shares;
-  kernels.strand_shares(fine, degree, patch.center, half, memory_for(fine.strands->count), shares);
+  kernels.strand_shares(level, degree, patch.center, half, memory_for(level.strands->count), shares);
   for (std::size_t k = 0; k < strand_places; ++k) {
     bool finite = std::isfinite(shares.share[k]);
     for (const auto& slope : shares.slope) finite = finite && std::isfinite(slope[k]);
@@ -141,7 +141,7 @@ double fit_patch(const Data& data, SharePatch& patch) {
 }  // namespace
 
 std::unique_ptr<const SharePatches::Part> SharePatches::make(const BlockKernels& kernels, int degree,
-                                                             const FieldLevel& fine, const int (&layer)[3],
+                                                             const BlockLevel& strands, const int (&layer)[3],
                                                              int layers_log2) const {
   auto part = std::make_unique<Part>();
   SharePatch& patch = part->patch;
@@ -150,8 +150,8 @@ std::unique_ptr<const SharePatches::Part> SharePatches::make(const BlockKernels&
   patch.inverse_half = 8.0F / static_cast<float>(width);
   for (int k = 0; k < 3; ++k)
     patch.center[k] = (static_cast<float>(layer[k] >> layers_log2) + 0.5F) * 0.25F * static_cast<float>(width) - 1;
-  const double residual = fit_patch(data_of(kernels, degree, fine, patch), patch);
-  patch.error = static_cast<float>(2 * residual);  // at some places between
+  const double residual = fit_patch(data_of(kernels, degree, strands.level, patch), patch);
+  patch.error = static_cast<float>(strands.angle_error + 2 * residual);  // it is off by more between places
   count_.fetch_add(1, std::memory_order_relaxed);
   if (layers_log2 > 0 && residual > largest_residual) {
     part->parts = std::make_unique<const Eight>();

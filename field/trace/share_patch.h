@@ -13,6 +13,7 @@
 
 #include "field/math/vec3.h"
 #include "field/trace/block_kernels.h"
+#include "field/trace/block_level.h"
 #include "field/trace/lazy.h"
 
 namespace marrow {
@@ -30,9 +31,10 @@ ShareAt share_at(const SharePatch&, const Vec3d& place);
 /// Those of one block. Safe to use from many threads.
 class SharePatches {
  public:
-  /// The part that holds a slot, given by its layers, 0 to 7. `fine` is asked for the fine level when a part is made.
-  template <class Fine>
-  const SharePatch& at(const int (&layer)[3], const BlockKernels& kernels, int degree, const Fine& fine) const;
+  /// The part that holds a slot, given by its layers, 0 to 7. `strands()` is the level of stranded_level.h; it is asked
+  /// for when a part is made.
+  template <class Strands>
+  const SharePatch& at(const int (&layer)[3], const BlockKernels& kernels, int degree, const Strands& strands) const;
 
   std::size_t bytes() const { return count_.load(std::memory_order_relaxed) * sizeof(Part); }
   /// The largest error of any that was made, see SharePatch.
@@ -45,7 +47,7 @@ class SharePatches {
     SharePatch patch;
     std::unique_ptr<const Eight> parts;  // where the patch does not tell the share well enough
   };
-  std::unique_ptr<const Part> make(const BlockKernels&, int degree, const FieldLevel& fine, const int (&layer)[3],
+  std::unique_ptr<const Part> make(const BlockKernels&, int degree, const BlockLevel& strands, const int (&layer)[3],
                                    int layers_log2) const;
 
   Eight octants_;
@@ -53,14 +55,14 @@ class SharePatches {
   mutable std::atomic<float> error_ = 0;
 };
 
-template <class Fine>
+template <class Strands>
 const SharePatch& SharePatches::at(const int (&layer)[3], const BlockKernels& kernels, int degree,
-                                   const Fine& fine) const {
+                                   const Strands& strands) const {
   const Eight* eight = &octants_;
   for (int log2 = 2;; --log2) {
     const int octant = (layer[0] >> log2 & 1) | (layer[1] >> log2 & 1) << 1 | (layer[2] >> log2 & 1) << 2;
     const Part& part =
-        (*eight)[static_cast<std::size_t>(octant)].get([&] { return make(kernels, degree, fine(), layer, log2); });
+        (*eight)[static_cast<std::size_t>(octant)].get([&] { return make(kernels, degree, strands(), layer, log2); });
     if (part.parts == nullptr) return part.patch;
     eight = part.parts.get();
   }

@@ -1,4 +1,4 @@
-// The fine level of a block whose angle comes from the directions of strands.
+// What the patches of a block are made from, where directions of strands give its angle (share_patch.h).
 #pragma once
 
 #include <vector>

@@ -35,17 +35,18 @@ double margin_of_shares(const HitShare& share, const Vec3d& normal, double step,
 
 HitShare share_of(const Block& block, const Vec3d& place, const PointField& f, int degree) {
   const BlockLevel& fine = block.fine();
-  const auto error = [&](double share) {
-    return 2 * (fine.angle_error + share * fine.f_error) / std::max(1e-20F, f.f);
+  // Twice, since a ray may start in a neighbour.
+  const auto error = [&](double share, double angle_error) {
+    return 2 * (angle_error + share * fine.f_error) / std::max(1e-20F, f.f);
   };
   if (block.patches() != nullptr) {
     const ShareAt at = block.share(place);
     // What strands give is within 1e-4 at 99 of 100 random places (an estimate).
-    return {at, error(at.share) + at.error + 2e-4, 0};
+    return {at, error(at.share, at.error) + 2e-4, 0};
   }
   const auto share = static_cast<double>(f.share);
   return {{.share = share, .gradient = vec(f.share_gradient), .bend = static_cast<double>(f.share_bend)},
-          error(share) + 1e-5,  // floats are rounded
+          error(share, fine.angle_error) + 1e-5,  // floats are rounded
           6.0 * degree + 2};
 }
 
