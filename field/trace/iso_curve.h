@@ -17,7 +17,8 @@ struct AngleTables {
   const float* steps = nullptr;  ///< value, lower, and both of the next entry
   /// Of each table; there are at least 16 numbers.
   const float *u_begin = nullptr, *inverse_step = nullptr, *sin_theta = nullptr, *cos_theta = nullptr;
-  int size = 0, count = 0;
+  const float* last = nullptr;  ///< the number of its last entry
+  int stride = 0, count = 0;    ///< entries from table to table; tables
 };
 
 class IsoCurve {
@@ -66,7 +67,9 @@ class IsoCurve {
   double least_, most_;
   std::vector<IsoTable> rows_;
   std::vector<View> views_;
-  std::vector<float> steps_, u_begin_, inverse_step_, sin_theta_, cos_theta_;  // of tables()
+  // Of tables()
+  std::vector<float> steps_, u_begin_, inverse_step_, sin_theta_, cos_theta_, last_entry_;
+  int stride_ = 0;
 };
 
 }  // namespace marrow

@@ -40,24 +40,25 @@ inline TableStep<V16> step_at(const float* steps, Index16 entry) {
 // A place in one of the tables, which may be another one in each lane.
 template <class F>
 struct RowPlace {
-  F sine, cosine, v, inverse_step, at, fraction;
+  F sine, cosine, v, inverse_step, last, at, fraction;
   TableStep<F> step;
 
   RowPlace(const AngleTables& tables, IntOf<F> row, F x, F y)
       : sine(of_row(tables.sin_theta, tables.count, row)),
         cosine(of_row(tables.cos_theta, tables.count, row)),
         v(x * sine + y * cosine),
-        inverse_step(of_row(tables.inverse_step, tables.count, row)) {
+        inverse_step(of_row(tables.inverse_step, tables.count, row)),
+        last(of_row(tables.last, tables.count, row)) {
     at = (y * sine - x * cosine - of_row(tables.u_begin, tables.count, row)) * inverse_step;
     const F from = max_of(at, 0.0F);
-    const IntOf<F> index = whole_part(min_of(from, static_cast<float>(tables.size - 1) - 0.5F));
+    const IntOf<F> index = whole_part(min_of(from, last - 0.5F));
     fraction = from - to_float(index);
-    step = step_at(tables.steps, row * tables.size + index);
+    step = step_at(tables.steps, row * tables.stride + index);
   }
   F slope() const { return step.next_value - step.value; }
   F value() const { return step.value + slope() * fraction; }
   F lower() const { return step.lower + (step.next_lower - step.lower) * fraction; }
-  MaskOf<F> beyond(const AngleTables& tables) const { return at >= static_cast<float>(tables.size - 1); }
+  MaskOf<F> beyond() const { return at >= last; }
 };
 
 // All that the tables give is cubic in the share of the range, through the four around it.
@@ -97,7 +98,7 @@ struct AngleRows {
       const RowPlace<F> p = place(i, x, y);
       const F value = p.value(), lower = p.lower();
       sum += weight[i] * (value - p.v) - abs_of(weight[i]) * (value - lower);
-      beyond = beyond | p.beyond(tables);
+      beyond = beyond | p.beyond();
     }
     return select(beyond, all_lanes<F>(-infinity), sum);
   }
@@ -107,7 +108,7 @@ struct AngleRows {
     for (int i = 0; i < 4; ++i) {
       const RowPlace<F> p = place(i, x, y);
       sum += weight[i] * (p.value() - p.v);
-      beyond = beyond | p.beyond(tables);
+      beyond = beyond | p.beyond();
     }
     return select(beyond, all_lanes<F>(-infinity), sum);
   }
@@ -129,7 +130,7 @@ inline F margin_of_next_row(const AngleTables& tables, MaskOf<F> upward, F share
   const IntOf<F> below = whole_part(at);
   const IntOf<F> row = select(upward & (to_float(below) < at), below + 1, below);
   const RowPlace<F> p(tables, row, x, y);
-  return select(p.beyond(tables), all_lanes<F>(-infinity), p.lower() - p.v);
+  return select(p.beyond(), all_lanes<F>(-infinity), p.lower() - p.v);
 }
 
 // Whether f is more than the reference curve has at this |G|: right of it C rises with the angle, left of it it falls
