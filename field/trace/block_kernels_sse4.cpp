@@ -21,6 +21,7 @@ namespace {
 #include "field/trace/kernels/patched_angle.h"
 #include "field/trace/kernels/march.h"
 #include "field/trace/kernels/search.h"
+#include "field/trace/kernels/approach.h"
 #include "field/trace/kernels/runs.h"
 #include "field/trace/kernels/first_root.h"
 #include "field/trace/kernels/walk.h"

@@ -11,8 +11,8 @@
 
 namespace marrow {
 
-/// The tables of a range of angles, for equal steps of their share, one after the other and of one size, with what
-/// IsoTable::View tells of each.
+/// The tables of a range of angles, for equal steps of their share, one after the other, with what IsoTable::View tells
+/// of each. They have different numbers of entries.
 struct AngleTables {
   const float* steps = nullptr;  ///< value, lower, and both of the next entry
   /// Of each table; there are at least 16 numbers.

@@ -4,33 +4,22 @@
 #include <cmath>
 #include <vector>
 
+#include "field/trace/far_field.h"
 #include "field/trace/level_cache.h"
 
 namespace marrow {
 namespace {
 
-constexpr int monomial_count = SharePatch::coefficients, data_count = 4 * strand_places;
+// The first of far_field.h.
+constexpr std::size_t coefficient_count = monomials_to_degree(SharePatch::degree);
+static_assert(coefficient_count == SharePatch::coefficients);
+constexpr int data_count = 4 * strand_places;
 
 // What a patch that is divided no further may be off, by the residuals of its fit. Where they are below it, the share
 // was off by 3e-5 at most in 4000 hits of hair and of a creature, by 5e-6 in the median.
 constexpr double largest_residual = 4e-5;
 // Places count by their value and by their slopes, which are off by more.
 constexpr double slope_weight = 0.3;
-
-struct Monomial {
-  int power[3];
-};
-
-// In the order of far_field.h.
-std::array<Monomial, monomial_count> make_monomials() {
-  std::array<Monomial, monomial_count> all{};
-  std::size_t at = 0;
-  for (int d = 0; d <= SharePatch::degree; ++d)
-    for (int a = d; a >= 0; --a)
-      for (int b = d - a; b >= 0; --b) all[at++] = {{a, b, d - a - b}};
-  return all;
-}
-const std::array<Monomial, monomial_count> monomials = make_monomials();
 
 // Of all monomials at a place.
 class Monomials {
@@ -43,15 +32,16 @@ class Monomials {
   }
   double value(const Monomial& m) const { return power(0, m) * power(1, m) * power(2, m); }
   double slope(const Monomial& m, std::size_t axis) const {
-    const int n = m.power[axis];
+    const int n = exponent(axis, m);
     if (n == 0) return 0;
     const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
     return n * powers_[axis][static_cast<std::size_t>(n) - 1] * power(a, m) * power(b, m);
   }
 
  private:
+  static int exponent(std::size_t axis, const Monomial& m) { return axis == 0 ? m.a : axis == 1 ? m.b : m.c; }
   double power(std::size_t axis, const Monomial& m) const {
-    return powers_[axis][static_cast<std::size_t>(m.power[axis])];
+    return powers_[axis][static_cast<std::size_t>(exponent(axis, m))];
   }
   double powers_[3][SharePatch::degree + 1];
 };
@@ -63,13 +53,13 @@ Vec3d place(std::size_t k) {
 
 // Least squares: coefficients from weighted data, four of each place: the value, then the slopes.
 struct Fit {
-  using Row = std::array<double, monomial_count>;
+  using Row = std::array<double, coefficient_count>;
   std::array<Row, data_count> basis{}, coefficients{};  // of the monomials; of each datum
 
   Fit() {
     for (std::size_t i = 0; i < data_count; ++i) {
       const Monomials at(place(i / 4));
-      for (std::size_t m = 0; m < monomial_count; ++m)
+      for (std::size_t m = 0; m < coefficient_count; ++m)
         basis[i][m] = i % 4 == 0 ? at.value(monomials[m]) : slope_weight * at.slope(monomials[m], i % 4 - 1);
     }
     solve();
@@ -78,27 +68,30 @@ struct Fit {
  private:
   // (B^T B)^-1 B^T by elimination with the diagonal: the matrix is positive definite, its pivots stay above 0.3.
   void solve() {
-    std::vector<std::array<double, monomial_count + data_count>> rows(monomial_count);
-    for (std::size_t r = 0; r < monomial_count; ++r) {
-      for (std::size_t c = 0; c < monomial_count; ++c)
+    std::vector<std::array<double, coefficient_count + data_count>> rows(coefficient_count);
+    for (std::size_t r = 0; r < coefficient_count; ++r) {
+      for (std::size_t c = 0; c < coefficient_count; ++c)
         for (std::size_t i = 0; i < data_count; ++i) rows[r][c] += basis[i][r] * basis[i][c];
-      for (std::size_t i = 0; i < data_count; ++i) rows[r][monomial_count + i] = basis[i][r];
+      for (std::size_t i = 0; i < data_count; ++i) rows[r][coefficient_count + i] = basis[i][r];
     }
-    for (std::size_t c = 0; c < monomial_count; ++c) {
+    for (std::size_t c = 0; c < coefficient_count; ++c) {
       const double inverse = 1 / rows[c][c];
       for (double& v : rows[c]) v *= inverse;
-      for (std::size_t r = 0; r < monomial_count; ++r) {
+      for (std::size_t r = 0; r < coefficient_count; ++r) {
         if (r == c) continue;
         const double factor = rows[r][c];
         for (std::size_t k = 0; k < rows[r].size(); ++k) rows[r][k] -= factor * rows[c][k];
       }
     }
     for (std::size_t i = 0; i < data_count; ++i)
-      for (std::size_t m = 0; m < monomial_count; ++m) coefficients[i][m] = rows[m][monomial_count + i];
+      for (std::size_t m = 0; m < coefficient_count; ++m) coefficients[i][m] = rows[m][coefficient_count + i];
   }
 };
 
-const Fit fit;
+const Fit& fit() {
+  static const Fit made;
+  return made;
+}
 
 using Data = std::array<double, data_count>;
 
@@ -127,14 +120,14 @@ Data data_of(const BlockKernels& kernels, int degree, const FieldLevel& level, c
 double fit_patch(const Data& data, SharePatch& patch) {
   Fit::Row sum{};
   for (std::size_t i = 0; i < data_count; ++i)
-    for (std::size_t m = 0; m < monomial_count; ++m) sum[m] += data[i] * fit.coefficients[i][m];
+    for (std::size_t m = 0; m < coefficient_count; ++m) sum[m] += data[i] * fit().coefficients[i][m];
   double largest = 0;
   for (std::size_t i = 0; i < data_count; ++i) {
     double residual = data[i];
-    for (std::size_t m = 0; m < monomial_count; ++m) residual -= fit.basis[i][m] * sum[m];
+    for (std::size_t m = 0; m < coefficient_count; ++m) residual -= fit().basis[i][m] * sum[m];
     largest = std::max(largest, std::fabs(residual));
   }
-  for (std::size_t m = 0; m < monomial_count; ++m) patch.coefficient[m] = static_cast<float>(sum[m]);
+  for (std::size_t m = 0; m < coefficient_count; ++m) patch.coefficient[m] = static_cast<float>(sum[m]);
   return largest;
 }
 
@@ -169,12 +162,11 @@ ShareAt share_at(const SharePatch& patch, const Vec3d& at) {
   const Monomials here(z);
   ShareAt out;
   double bend = 0;
-  for (std::size_t m = 0; m < monomial_count; ++m) {
+  for (std::size_t m = 0; m < coefficient_count; ++m) {
     const auto c = static_cast<double>(patch.coefficient[m]);
     out.share += c * here.value(monomials[m]);
     for (std::size_t k = 0; k < 3; ++k) out.gradient[k] += c * here.slope(monomials[m], k);
-    const int* p = monomials[m].power;
-    const double d = p[0] + p[1] + p[2];
+    const double d = monomials[m].degree();
     // Half of the second derivative along a unit vector, of a monomial of degree d where |z| <= 1 along each axis.
     bend += 0.5 * std::fabs(c) * d * d;
   }

@@ -89,6 +89,7 @@ class BlockSearch {
     rays_ = reinterpret_cast<BlockRays*>(memory.rays);
     runs_ = reinterpret_cast<Runs<Rule, V16>*>(memory.rays + sizeof(BlockRays));
   }
+
   // As first_root() of each of these rays.
   void run(std::uint64_t open) {
     BlockRays& r = *rays_;
@@ -121,6 +122,14 @@ class BlockSearch {
       at.load(which, rays_->origin[k], rays.origin[k]);
       at.load(which, rays_->direction[k], rays.direction[k]);
     }
+  }
+
+  // Those that wait, in free lanes.
+  Index16 seat(Lanes& at, std::uint64_t& waiting, Ray16& rays, AngleOnRuns<Rule>& angle) const {
+    const Index16 seated = at.seat(waiting);
+    load_rays(at, seated, rays);
+    angle.load(at, seated, *rays_);
+    return seated;
   }
 
   // Returns the rays that are to go on.
@@ -199,9 +208,7 @@ class BlockSearch {
     Lanes at;
     for (;;) {
       if (waiting != 0) {
-        const Index16 seated = at.seat(waiting);
-        load_rays(at, seated, rays);
-        angle.load(at, seated, r);
+        const Index16 seated = seat(at, waiting, rays, angle);
         const V16 begin = at.load(r.begin), end = at.load(r.end);
         search.restart(seated, begin, end);
         march.evaluations = select(seated, Index16{}, march.evaluations);
@@ -238,9 +245,7 @@ class BlockSearch {
     Lanes at;
     for (;;) {
       if (waiting != 0) {
-        const Index16 seated = at.seat(waiting);
-        load_rays(at, seated, rays);
-        angle.load(at, seated, r);
+        const Index16 seated = seat(at, waiting, rays, angle);
         search.restart(seated, at.load(r.front), at.load(r.end));
         at.load(seated, r.guess, decision.guess);
         decision.samples = select(seated, Index16{}, decision.samples);
