@@ -88,13 +88,13 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
                             .from_outside = log.side == CellLog::Side::Outside,
                             .leaving = log.side == CellLog::Side::Inside};
   Root root = state_->kernels.first_root(b.view(), cube.local, query);
-  log.evaluations += static_cast<std::uint32_t>(root.evaluations);
+  log.add({cube.to_world(root.searched_from), static_cast<std::uint32_t>(root.evaluations)});
   if (root.begins_outside) log.side = CellLog::Side::Outside;
   if (root.enters_inside && begins_inside(state_->field, state_->bounds, state_->serial, ray)) {
     log.side = CellLog::Side::Inside;
     query.leaving = true;
     root = state_->kernels.first_root(b.view(), cube.local, query);
-    log.evaluations += static_cast<std::uint32_t>(root.evaluations);
+    log.add({cube.to_world(root.searched_from), static_cast<std::uint32_t>(root.evaluations)});
   }
   log.undecided = std::min(log.undecided, cube.to_world(root.undecided));
   if (!root.hit) return {};

@@ -20,6 +20,7 @@
 #include "field/math/ray.h"
 #include "field/math/ray_packet.h"
 #include "field/trace/cell_settings.h"
+#include "field/trace/ray_visit.h"
 
 namespace marrow {
 
@@ -62,11 +63,17 @@ struct TracePart {
 struct CellLog {
   double enter = 0;                                            ///< t at which the ray came into it
   double undecided = std::numeric_limits<double>::infinity();  ///< t of the first gap too short to decide
-  std::uint32_t evaluations = 0;                               ///< of the field
+  std::uint32_t evaluations = 0;                               ///< of all visits
   enum class Side { Unknown, Outside, Inside };
   Side side = Side::Unknown;  ///< where the ray was before what it meets next
   /// For parts, which pass it on: a ray has been outside before it enters what lies from here on, which saves asking.
   double outside_from = std::numeric_limits<double>::infinity();
+  std::vector<RayVisit>* visits = nullptr;  ///< grows by the cells with evaluations, if there is one
+
+  void add(const RayVisit& visit) {
+    evaluations += visit.evaluations;
+    if (visits != nullptr && visit.evaluations > 0) visits->push_back(visit);
+  }
 };
 
 /// What the rays of a packet met in a part, lane by lane; `hit.block` is null where nothing was met.

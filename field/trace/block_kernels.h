@@ -96,6 +96,7 @@ struct Root {
   bool hit = false;
   float undecided = std::numeric_limits<float>::infinity();  ///< where the first gap too short to decide was skipped
   int evaluations = 0;
+  float searched_from = 0;      ///< where the ray first comes to where surface can be, if there are evaluations
   bool begins_outside = false;  ///< the ray is known to be outside before the hit, or to have been before t0
   bool enters_inside = false;   ///< a hit, but the field is clearly above 1 where surface can first be in the block
 };
@@ -135,8 +136,9 @@ struct CellRoots {
   alignas(64) double outside_from[packet_size];  ///< as in CellLog; in and out
   alignas(64) double enter[packet_size];         ///< where it comes into the cell, and leaves it
   alignas(64) double exit[packet_size];
-  alignas(64) double t[packet_size];          ///< of a hit
-  alignas(64) double undecided[packet_size];  ///< as in Root
+  alignas(64) double t[packet_size];              ///< of a hit
+  alignas(64) double undecided[packet_size];      ///< as in Root
+  alignas(64) double searched_from[packet_size];  ///< the same
   alignas(64) int evaluations[packet_size];
   std::uint64_t entered, begins_outside, enters_inside;
   std::uint64_t met, hit;  ///< met the surface; and not behind their ends

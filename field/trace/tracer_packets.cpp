@@ -72,7 +72,7 @@ CellPlace place_of(const TracePart& part, const Block& block) {
 }
 
 void add_to(CellLog& log, const CellRoots& roots, std::size_t lane) {
-  log.evaluations += static_cast<std::uint32_t>(roots.evaluations[lane]);
+  log.add({roots.searched_from[lane], static_cast<std::uint32_t>(roots.evaluations[lane])});
   if (roots.begins_outside >> lane & 1) log.side = CellLog::Side::Outside;
   log.undecided = std::min(log.undecided, roots.undecided[lane]);
 }

@@ -15,11 +15,11 @@ namespace {
 
 std::vector<SolidPart> whole_elements(const Solid& solid) { return solid.Solid::parts(); }
 
-// Elements that begin behind the hit are visited or not as the traversal happens to go: they do not count.
-RayRecord record_of(const std::vector<ElementLog>& visits, double undecided, double hit_t) {
-  RayRecord r{.evaluations = 0, .certified = !(undecided < hit_t)};
-  for (const ElementLog& v : visits)
-    if (v.enter <= hit_t) r.evaluations += v.evaluations;
+// Visits that begin at the end or behind it are made or not as the traversal happens to go: they do not count.
+RayRecord record_of(const std::vector<RayVisit>& visits, double undecided, double end) {
+  RayRecord r{.evaluations = 0, .certified = !(undecided < end)};
+  for (const RayVisit& v : visits)
+    if (v.begin < end) r.evaluations += v.evaluations;
   return r;
 }
 
@@ -116,20 +116,28 @@ std::optional<SurfaceHit> EmbreeSurfaces::hit_of(const PartHierarchy::Hit& found
   return hit;
 }
 
+// Of a ray that begins inside only whole elements tell.
+PartHierarchy::Hit EmbreeSurfaces::asked_of_elements(const Ray& ray, std::vector<RayVisit>* visits) const {
+  if (visits != nullptr) visits->clear();
+  return whole_->first_hit(ray, visits);
+}
+
+PartHierarchy::Hit EmbreeSurfaces::nearest_on(const Ray& ray, std::vector<RayVisit>* visits) const {
+  const PartHierarchy::Hit found = finest().first_hit(ray, visits);
+  return found.begins_inside ? asked_of_elements(ray, visits) : found;
+}
+
 std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray) const {
   const PlaneHit plane = nearest_plane(ray);
-  const Ray before_plane = until(ray, plane.t);
-  PartHierarchy::Hit found = finest().first_hit(before_plane, nullptr);
-  if (found.begins_inside) found = whole_->first_hit(before_plane, nullptr);
-  return hit_of(found, plane, ray);
+  return hit_of(nearest_on(until(ray, plane.t), nullptr), plane, ray);
 }
 
 std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray, RayRecord& record) const {
-  thread_local std::vector<ElementLog> visits;
+  thread_local std::vector<RayVisit> visits;
   visits.clear();
   const PlaneHit plane = nearest_plane(ray);
-  const PartHierarchy::Hit found = whole_->first_hit(until(ray, plane.t), &visits);
-  record = record_of(visits, found.undecided, std::min(found.t, plane.t));
+  const PartHierarchy::Hit found = nearest_on(until(ray, plane.t), &visits);
+  record = record_of(visits, found.undecided, std::min({found.t, plane.t, ray.t_max}));
   return hit_of(found, plane, ray);
 }
 
@@ -151,19 +159,22 @@ void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::option
   std::vector<PartHierarchy::Hit> found(rays.size());
   stream_first_hits(finest(), before.rays, found, {});
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (found[i].begins_inside) found[i] = whole_->first_hit(before.rays[i], nullptr);
+    if (found[i].begins_inside) found[i] = asked_of_elements(before.rays[i], nullptr);
     hits[i] = hit_of(found[i], before.plane(i), rays[i]);
   }
 }
 
 void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits,
                                 std::span<RayRecord> records) const {
+  thread_local std::vector<std::vector<RayVisit>> visits;
+  visits.resize(std::max(visits.size(), rays.size()));
+  for (std::size_t i = 0; i < rays.size(); ++i) visits[i].clear();
   const BeforePlanes before(*this, rays);
-  std::vector<std::vector<ElementLog>> visits(rays.size());
   std::vector<PartHierarchy::Hit> found(rays.size());
-  stream_first_hits(*whole_, before.rays, found, visits);
+  stream_first_hits(finest(), before.rays, found, std::span(visits).first(rays.size()));
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    records[i] = record_of(visits[i], found[i].undecided, std::min(found[i].t, before.plane(i).t));
+    if (found[i].begins_inside) found[i] = asked_of_elements(before.rays[i], &visits[i]);
+    records[i] = record_of(visits[i], found[i].undecided, std::min({found[i].t, before.plane(i).t, rays[i].t_max}));
     hits[i] = hit_of(found[i], before.plane(i), rays[i]);
   }
 }

@@ -76,6 +76,8 @@ class EmbreeSurfaces final : public Surfaces {
     std::vector<PlaneHit> planes_;  // none where there are no planes
     std::vector<Ray> shorter_;
   };
+  PartHierarchy::Hit asked_of_elements(const Ray&, std::vector<RayVisit>*) const;
+  PartHierarchy::Hit nearest_on(const Ray&, std::vector<RayVisit>*) const;
   const PartHierarchy& finest() const { return *finest_.load(std::memory_order_acquire); }
   std::optional<SurfaceHit> hit_of(const PartHierarchy::Hit&, const PlaneHit&, const Ray&) const;
 

@@ -6,6 +6,11 @@
 #include <utility>
 
 namespace marrow {
+namespace {
+
+std::size_t visits_so_far(const ElementLog& log) { return log.visits == nullptr ? 0 : log.visits->size(); }
+
+}  // namespace
 
 Result<std::unique_ptr<FieldSolid>> FieldSolid::make(PlacedBlend part, MaterialId of_object,
                                                      const TraceOptions& options) {
@@ -55,12 +60,13 @@ FieldSolid::LocalRay FieldSolid::to_local(const Ray& ray) const {
           stretch};
 }
 
-ElementLog FieldSolid::to_world(const CellLog& log, double stretch) {
-  return {.enter = log.enter / stretch,
-          .undecided = log.undecided / stretch,
-          .evaluations = log.evaluations,
-          .outside_from = log.outside_from / stretch,
-          .begins_inside = log.side == CellLog::Side::Inside};
+void FieldSolid::to_world(const CellLog& log, double stretch, std::size_t visits_before, ElementLog& out) {
+  out.enter = log.enter / stretch;
+  out.undecided = log.undecided / stretch;
+  out.outside_from = log.outside_from / stretch;
+  out.begins_inside = log.side == CellLog::Side::Inside;
+  if (out.visits == nullptr) return;
+  for (std::size_t i = visits_before; i < out.visits->size(); ++i) (*out.visits)[i].begin /= stretch;
 }
 
 template <class Place>
@@ -68,8 +74,10 @@ std::optional<double> FieldSolid::traced(const Place& place, const Ray& ray, boo
   const auto [local, stretch] = to_local(ray);
   CellLog cell;
   cell.outside_from = log.outside_from * stretch;
+  cell.visits = log.visits;
+  const std::size_t before = visits_so_far(log);
   const auto found = tracer_->first_hit(place, local, any, cell);
-  log = to_world(cell, stretch);
+  to_world(cell, stretch, before, log);
   if (!found) return {};
   const double t = std::max(ray.t_min, found->t / stretch);
   if (!any && t > ray.t_max) return {};
@@ -100,11 +108,16 @@ void FieldSolid::hits_in_part(const SolidPart& part, const RayPacket& packet, La
       stretch[i] = local.stretch;
     });
   CellHits cells;
-  for_each_lane(lanes, [&](std::size_t i) { cells.log[i].outside_from = log.lanes[i].outside_from * stretch[i]; });
+  std::array<std::size_t, RayPacket::size> before;
+  for_each_lane(lanes, [&](std::size_t i) {
+    cells.log[i].outside_from = log.lanes[i].outside_from * stretch[i];
+    cells.log[i].visits = log.lanes[i].visits;
+    before[i] = visits_so_far(log.lanes[i]);
+  });
   const TracePart place{part.element, static_cast<const Tile*>(part.within), part.slot};
   tracer_->first_hits(place, in_world_ ? packet : moved, lanes, any, cells);
   for_each_lane(lanes, [&](std::size_t i) {
-    log.lanes[i] = to_world(cells.log[i], stretch[i]);
+    to_world(cells.log[i], stretch[i], before[i], log.lanes[i]);
     if (part.within == nullptr) log.lanes[i].begins_inside = false;  // as of an element in hit()
     log.lanes[i].place = cells.hit[i].block;
     const double t = std::max(packet.t_min[i], cells.hit[i].t / stretch[i]);

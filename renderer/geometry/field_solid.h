@@ -39,7 +39,7 @@ class FieldSolid final : public Solid {
     double stretch;
   };
   LocalRay to_local(const Ray&) const;
-  static ElementLog to_world(const CellLog&, double stretch);
+  static void to_world(const CellLog&, double stretch, std::size_t visits_before, ElementLog&);
   template <class Place>
   std::optional<double> traced(const Place&, const Ray&, bool any, ElementLog&) const;
   Box3 to_world(const Box3&) const;

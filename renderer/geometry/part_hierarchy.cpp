@@ -156,9 +156,9 @@ PartHierarchy::PartHierarchy(std::vector<PartsOfSolid> solids) : solids_(std::mo
   }
 }
 
-PartHierarchy::Hit PartHierarchy::first_hit(const Ray& ray, std::vector<ElementLog>* logs) const {
+PartHierarchy::Hit PartHierarchy::first_hit(const Ray& ray, std::vector<RayVisit>* visits) const {
   PartVisit visit(ray);
-  visit.logs = logs;
+  visit.visits = visits;
   RTCRayHit rayhit{};
   rayhit.hit.geomID = rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   if (!start(padded_bounds_, visit, reinterpret_cast<RTCRayN*>(&rayhit.ray), 1, 0)) return {};

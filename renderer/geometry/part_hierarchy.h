@@ -30,8 +30,8 @@ class PartHierarchy {
 
   using Hit = PartHit;
   /// The smallest t wins; at equal t the lower solid, the lower element, the part entered first: the order of traversal
-  /// shows nowhere. `logs`, if any, is told of all parts visited.
-  Hit first_hit(const Ray&, std::vector<ElementLog>* logs) const;
+  /// shows nowhere. `visits` grows, if there is one.
+  Hit first_hit(const Ray&, std::vector<RayVisit>* visits = nullptr) const;
   bool occluded(const Ray&) const;
 
   static constexpr std::size_t most_together = 16;

@@ -28,7 +28,7 @@ class PartVisit {
   Ray ray;
   double t_start = 0;  ///< where the search of boxes begins on the ray
   PartHit best;
-  std::vector<ElementLog>* logs = nullptr;  ///< told of all parts, if there is one
+  std::vector<RayVisit>* visits = nullptr;  ///< of all parts, if there is one
 
   /// Where the ray is in a box, before its end and before the best hit. A ray exactly in the plane of a padded face
   /// gives NaN and may count either way; what the box is padded for is not there.
@@ -51,6 +51,7 @@ class PartVisit {
   /// What a part of the solid is told of the ray.
   ElementLog before(const Solid& solid) const {
     ElementLog log;
+    log.visits = visits;
     if (outside_of_ == &solid) log.outside_from = outside_from_;
     return log;
   }
@@ -59,7 +60,6 @@ class PartVisit {
   bool take(std::size_t index, const Solid& solid, const SolidPart& part, double t, const ElementLog& log) {
     outside_of_ = &solid;
     outside_from_ = log.outside_from;
-    if (logs != nullptr && log.evaluations > 0) logs->push_back(log);
     best.undecided = std::min(best.undecided, log.undecided);
     best.begins_inside |= log.begins_inside;
     if (!(t < std::numeric_limits<double>::infinity()) || t > best.t) return false;

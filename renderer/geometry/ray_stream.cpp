@@ -119,14 +119,14 @@ bool worth_streaming(const PartHierarchy& hierarchy, std::span<const Ray> rays) 
 }  // namespace
 
 void stream_first_hits(const PartHierarchy& hierarchy, std::span<const Ray> rays, std::span<PartHit> hits,
-                       std::span<std::vector<ElementLog>> logs) {
-  const auto log_of = [logs](std::size_t i) { return logs.empty() ? nullptr : &logs[i]; };
+                       std::span<std::vector<RayVisit>> visits) {
+  const auto visits_of = [visits](std::size_t i) { return visits.empty() ? nullptr : &visits[i]; };
   if (!worth_streaming(hierarchy, rays)) {
-    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = hierarchy.first_hit(rays[i], log_of(i));
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = hierarchy.first_hit(rays[i], visits_of(i));
     return;
   }
   Stream stream(hierarchy, false, rays);
-  for (std::size_t i = 0; i < logs.size(); ++i) stream.rays()[i].visit.logs = log_of(i);
+  for (std::size_t i = 0; i < visits.size(); ++i) stream.rays()[i].visit.visits = visits_of(i);
   stream.run();
   for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = stream.rays()[i].visit.best;
 }

@@ -12,18 +12,19 @@
 #include "field/math/box3.h"
 #include "field/math/ray.h"
 #include "field/math/ray_packet.h"
+#include "field/trace/ray_visit.h"
 #include "renderer/geometry/surfaces.h"
 
 namespace marrow {
 
 /// What a ray did in an element, hit or not; t along the world ray.
 struct ElementLog {
-  double enter = 0;                                            ///< where the ray came into the element
-  double undecided = std::numeric_limits<double>::infinity();  ///< the first place that could not be decided
-  std::uint32_t evaluations = 0;
+  double enter = 0;                                               ///< where the ray came into the element
+  double undecided = std::numeric_limits<double>::infinity();     ///< the first place that could not be decided
   const void* place = nullptr;                                    ///< of a hit in the element, for describe()
   double outside_from = std::numeric_limits<double>::infinity();  ///< CellLog's, from part to part of one solid
-  bool begins_inside = false;  ///< of a part: the ray begins inside, and elements have to be asked instead
+  bool begins_inside = false;               ///< of a part: the ray begins inside, and elements have to be asked instead
+  std::vector<RayVisit>* visits = nullptr;  ///< grows by those with evaluations, if there is one
 };
 
 /// What the rays of a packet did in a part, lane by lane.

@@ -24,8 +24,9 @@ struct SurfaceHit {
 
 /// What it took to answer a ray. A function of the ray alone, whatever the order of traversal.
 struct RayRecord {
-  std::uint32_t evaluations = 0;  ///< of fields, in all cells that the ray entered up to its hit
-  bool certified = true;          ///< it is proved that no surface before the hit (or anywhere) was skipped
+  /// Of fields, in all cells that the ray entered before its hit; those that tell on which side it begins not counted.
+  std::uint32_t evaluations = 0;
+  bool certified = true;  ///< it is proved that no surface before the hit (or anywhere) was skipped
 };
 
 /// Immutable and safe to call from many threads.
@@ -37,7 +38,7 @@ class Surfaces {
     RayRecord unused;
     return first_hit(ray, unused);
   }
-  /// The same hit, to the same bits, and what it took; slower once refine() has been called.
+  /// The same hit, to the same bits, and what it took.
   virtual std::optional<SurfaceHit> first_hit(const Ray&, RayRecord&) const = 0;
   /// Whether any surface lies on the ray within its interval.
   virtual bool occluded(const Ray&) const = 0;

@@ -11,7 +11,9 @@ Result<std::unique_ptr<TreeSolid>> TreeSolid::make(FieldTree tree, MaterialId of
 std::optional<double> TreeSolid::hit(std::size_t element, const Ray& ray, bool any, ElementLog& log) const {
   CellLog cell;
   const auto found = tracer_.first_hit(element, ray, any, cell);
-  log = {.enter = cell.enter, .undecided = cell.undecided, .evaluations = cell.evaluations, .place = nullptr};
+  log.enter = cell.enter;
+  log.undecided = cell.undecided;
+  if (log.visits != nullptr && cell.evaluations > 0) log.visits->push_back({cell.enter, cell.evaluations});
   if (!found) return {};
   return found->t;
 }

@@ -14,6 +14,7 @@
 
 #include "renderer/transport/integrators/integrator.h"
 #include "renderer/transport/pixel_block.h"
+#include "renderer/transport/scout.h"
 #include "renderer/transport/tile_order.h"
 
 namespace marrow {
@@ -95,20 +96,33 @@ void render_tile(const Job& job, const PixelWindow& tile, Pass pass, Film& film)
                    film);
 }
 
-void render_pass(const Job& job, const std::vector<PixelWindow>& tiles, Pass pass, Film& film, Meter& meter) {
+template <class Visit>
+void for_each_tile(const Job& job, const std::vector<PixelWindow>& tiles, const Visit& visit) {
   // Worker threads take over the floating-point settings of this one
   tbb::task_group_context context(tbb::task_group_context::isolated);
   context.capture_fp_settings();
-  const auto render_tiles = [&](const tbb::blocked_range<std::size_t>& range) {
-    for (std::size_t t = range.begin(); t < range.end() && !job.interrupted(); ++t) {
-      const PixelWindow& tile = tiles[t];
-      render_tile(job, tile, pass, film);
-      meter.add(static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height()) *
-                static_cast<std::uint64_t>(pass.count));
-    }
+  const auto visit_tiles = [&](const tbb::blocked_range<std::size_t>& range) {
+    for (std::size_t t = range.begin(); t < range.end() && !job.interrupted(); ++t) visit(tiles[t]);
   };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles.size(), 1), render_tiles, tbb::simple_partitioner{},
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles.size(), 1), visit_tiles, tbb::simple_partitioner{},
                     context);
+}
+
+void render_pass(const Job& job, const std::vector<PixelWindow>& tiles, Pass pass, Film& film, Meter& meter) {
+  for_each_tile(job, tiles, [&](const PixelWindow& tile) {
+    render_tile(job, tile, pass, film);
+    meter.add(static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height()) *
+              static_cast<std::uint64_t>(pass.count));
+  });
+}
+
+// What divides space for them is found by all rays sooner in surfaces that are refined.
+void scout(const Job& job, const PixelWindow& window) {
+  for (const int step : scout_steps) {
+    for_each_tile(job, tiles_of(window, scouted_side(step)),
+                  [&](const PixelWindow& tile) { send_scouts(job.pixels, tile, step); });
+    job.scene.surfaces->refine();
+  }
 }
 
 // 1, 1, 2, 4, 8, 16, 16, ... samples: pictures of a power of two, and never long without a look at the clock. Under a
@@ -128,6 +142,7 @@ bool worth_refining(int done, int samples) {
 }
 
 void render_passes(const Job& job, Film& film, Meter& meter) {
+  scout(job, film.data());
   const std::vector<PixelWindow> tiles = tiles_of(film.data(), std::max(job.options.tile_size, 1));
   for (int done = 0; done < job.samples;) {
     const int count = next_count(job, done, meter.elapsed());

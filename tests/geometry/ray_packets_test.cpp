@@ -112,7 +112,8 @@ Rays of_all_kinds(Random& random, const Surfaces& surfaces, const BlendField& bl
 struct Comparison {
   int rays = 0, hits = 0, hidden = 0, differ = 0;
 
-  void check(const Surfaces& surfaces, std::span<const Ray> batch) {
+  // `whole` is the same and never refined.
+  void check(const Surfaces& surfaces, const Surfaces& whole, std::span<const Ray> batch) {
     Hits found(batch.size()), recorded(batch.size());
     surfaces.first_hits(batch, found);
     std::vector<RayRecord> records(batch.size());
@@ -124,9 +125,11 @@ struct Comparison {
       const bool hides = surfaces.occluded(batch[i]);
       hits += expected.has_value();
       hidden += hides;
-      RayRecord record;
-      differ += !same(surfaces.first_hit(batch[i], record), recorded[i]) ||
-                record.evaluations != records[i].evaluations || record.certified != records[i].certified;
+      for (const Surfaces* each : {&surfaces, &whole}) {
+        RayRecord record;
+        differ += !same(each->first_hit(batch[i], record), recorded[i]) ||
+                  record.evaluations != records[i].evaluations || record.certified != records[i].certified;
+      }
       differ += !same(expected, found[i]) || occluded[i] != (hides ? 1 : 0);
     }
   }
@@ -150,15 +153,17 @@ TEST(RayPackets, EqualSingleRays) {
     Random random(131);
     Comparison camera, faces, shadows, mixed, few;
     const BlendField blend = random_scene(random, {4, contact_alpha(4)}, 5);
+    Random again = random;
     const auto surfaces = everything(random, blend, "threads=1,max_isa=" + isa);
+    const auto whole = everything(again, blend, "threads=1,max_isa=" + isa);
     for (int i = 0; i < 80; ++i) {
       if (i % 15 == 14) surfaces->refine();
-      camera.check(*surfaces, of_a_camera(random));
-      faces.check(*surfaces, of_faces(random, *surfaces));
-      shadows.check(*surfaces, of_shadows(random, *surfaces));
+      camera.check(*surfaces, *whole, of_a_camera(random));
+      faces.check(*surfaces, *whole, of_faces(random, *surfaces));
+      shadows.check(*surfaces, *whole, of_shadows(random, *surfaces));
       const Rays rays = of_all_kinds(random, *surfaces, blend);
-      mixed.check(*surfaces, rays);
-      few.check(*surfaces, std::span(rays).first(static_cast<std::size_t>(random.whole(0, 5))));
+      mixed.check(*surfaces, *whole, rays);
+      few.check(*surfaces, *whole, std::span(rays).first(static_cast<std::size_t>(random.whole(0, 5))));
     }
     camera.report(isa + ", of a camera");
     faces.report(isa + ", of faces");
@@ -174,13 +179,13 @@ TEST(RayPackets, EqualSingleRaysFarFromTheOrigin) {
   Comparison all;
   const Vec3d away{1000, 1000, -1000};
   const BlendField blend = random_scene(random, {4, 0.3}, 5);
-  const SolidScene scene({placed(moved(blend, away))});
+  const SolidScene scene({placed(moved(blend, away))}), whole({placed(moved(blend, away))});
   for (int i = 0; i < 180; ++i) {
     if (i % 40 == 39) scene.surfaces().refine();
     Rays rays = of_a_camera(random);
     for (Ray& ray : rays) ray = moved(ray, away);
-    all.check(scene.surfaces(), rays);
-    all.check(scene.surfaces(), of_faces(random, scene.surfaces()));
+    all.check(scene.surfaces(), whole.surfaces(), rays);
+    all.check(scene.surfaces(), whole.surfaces(), of_faces(random, scene.surfaces()));
   }
   all.report("1000 away from the origin");
 }

@@ -57,6 +57,7 @@ struct RootOf {
   MaskOf<F> hit{};
   F undecided = all_lanes<F>(infinity);
   IntOf<F> evaluations{};
+  F searched_from{};
   MaskOf<F> begins_outside{}, enters_inside{};  // as in Root
 };
 

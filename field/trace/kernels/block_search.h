@@ -7,6 +7,7 @@ struct BlockRays {
   alignas(64) float from[packet_size], to[packet_size];
   alignas(64) float begin[packet_size], end[packet_size];    // of the run where each is
   alignas(64) float front[packet_size], guess[packet_size];  // where the fine level begins, and looks first
+  alignas(64) float searched_from[packet_size];              // as in Root
   alignas(64) float t[packet_size], undecided[packet_size];
   alignas(64) int evaluations[packet_size];
   alignas(64) float share[SharePatch::degree + 1][packet_size];  // ShareOnRun of the run, where patches give the angle
@@ -102,14 +103,15 @@ class BlockSearch {
     }
     open = leave_surfaces(open);
     start_runs(open);
+    open &= next_runs(open);
+    __builtin_memcpy(r.searched_from, r.begin, sizeof r.begin);
     while (open != 0) {
-      open &= next_runs(open);
-      if (open == 0) break;
       const std::uint64_t met = decide_all(approach_all(open)) | surely_inside_;
       r.hit |= met;
       const std::uint64_t unknown = met & ~r.begins_outside;
       if (!any_root_ && unknown != 0) find_sides(unknown);
       open &= ~met;
+      open &= next_runs(open);
     }
   }
 
@@ -146,7 +148,6 @@ class BlockSearch {
       const Index16 go_on = leave_surface<Rule>(block_, rays, query, here, root, front);
       at.store(here, r.from, front);
       at.store(here & root.hit, r.t, root.t);
-      at.add(here, r.evaluations, root.evaluations);
       r.hit |= at.in_packet(root.hit);
       r.begins_outside |= at.in_packet(root.begins_outside);
       r.enters_inside |= at.in_packet(root.enters_inside);
@@ -280,8 +281,7 @@ class BlockSearch {
         angle.run.from = r.begin[lane];
         for (int i = 0; i <= SharePatch::degree; ++i) angle.run.way.c[i] = r.share[i][lane];
       }
-      if (is_inside<Rule>(block_, ray, r.begin[lane], angle.source, r.evaluations[lane]))
-        r.enters_inside |= std::uint64_t{1} << lane;
+      if (is_inside<Rule>(block_, ray, r.begin[lane], angle.source)) r.enters_inside |= std::uint64_t{1} << lane;
     }
   }
 

@@ -84,15 +84,12 @@ inline constexpr float clearly_inside = 2e-5F;
 
 // Whether the ray is inside at t, by the coarse level where that can tell.
 template <Angle Rule>
-inline bool is_inside(const BlockView& block, const LocalRay& ray, float t, const AngleSource<Rule, float>& angle,
-                      int& evaluations) {
+inline bool is_inside(const BlockView& block, const LocalRay& ray, float t, const AngleSource<Rule, float>& angle) {
   Marcher<Rule> rough(block, block.coarse(), ray, angle);
   const SampleOf<Rule> p = rough.sample(t, true);
-  ++evaluations;
   if (p.residual > 0) return false;
   if (p.nominal < -clearly_inside && rough.inside_at(p, 0)) return true;
   Marcher<Rule> march(block, block.fine(), ray, angle);
-  ++evaluations;
   return march.sample(t, true).nominal < -clearly_inside;
 }
 
@@ -115,7 +112,6 @@ inline MaskOf<F> leave_surface(const BlockView& block, const RayOf<F>& ray, cons
   Marcher<Rule, F> march(block, block.fine(), ray, angle.source);
   Search<Rule, F> start(march, query.t0, end);
   const SampleOf<Rule, F> first = march.sample(query.t0, rays);
-  root.evaluations = march.evaluations;
   const Mask inside = rays & (first.nominal < -clearly_inside), outside = rays & !inside;
   root.hit = inside;
   if (!query.any) root.enters_inside = inside;
@@ -141,11 +137,12 @@ inline RootOf<float> first_root_of(const BlockView& block, const LocalRay& ray, 
     root.hit = found.hit;
     if (found.hit) root.t = found.t;
     root.undecided = min_of(root.undecided, found.undecided);
+    if (root.evaluations == 0) root.searched_from = run.begin;
     root.evaluations += found.evaluations;
     root.begins_outside |= found.begins_outside;
     // Any root will do: a ray that begins inside meets one where it leaves.
     if (found.hit && !root.begins_outside && !query.leaving && !query.any)
-      root.enters_inside = is_inside<Rule>(block, ray, run.begin, angle.source, root.evaluations);
+      root.enters_inside = is_inside<Rule>(block, ray, run.begin, angle.source);
   }
   return root;
 }
@@ -154,7 +151,8 @@ template <Angle Rule>
 inline Root single_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& q) {
   const QueryOf<float> query{q.t0, q.t1, q.any, q.leaving, q.from_surface, q.from_outside};
   const RootOf<float> root = first_root_of<Rule>(block, ray, query);
-  return {root.t, root.hit, root.undecided, root.evaluations, root.begins_outside, root.enters_inside};
+  return {
+      root.t, root.hit, root.undecided, root.evaluations, root.searched_from, root.begins_outside, root.enters_inside};
 }
 
 Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {

@@ -48,8 +48,8 @@ inline V16 field_of(V16 share, V16 tau, V16 inv, int exponent) {
   return share * inverse_power<Exponent>(tau * tau * inv, exponent);
 }
 
-// Sums over 16 lanes of up to 16 accumulators at once, as a tree: halves, quarters, pairs, single lanes.
-inline void sum_lanes(const V16 (&a)[12], float (&sums)[16]) {
+// Sums over 16 lanes of 12 accumulators at once, in as many lanes, as a tree: halves, quarters, pairs, single lanes.
+inline V16 lane_sums(const V16 (&a)[12]) {
   V16 b[6], c[3], d[2];
   for (int i = 0; i < 6; ++i)
     b[i] =
@@ -64,8 +64,11 @@ inline void sum_lanes(const V16 (&a)[12], float (&sums)[16]) {
     d[i] = __builtin_shufflevector(lo, hi, 0, 1, 4, 5, 8, 9, 12, 13, 16, 17, 20, 21, 24, 25, 28, 29) +
            __builtin_shufflevector(lo, hi, 2, 3, 6, 7, 10, 11, 14, 15, 18, 19, 22, 23, 26, 27, 30, 31);
   }
-  const V16 s = __builtin_shufflevector(d[0], d[1], 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30) +
-                __builtin_shufflevector(d[0], d[1], 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+  return __builtin_shufflevector(d[0], d[1], 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30) +
+         __builtin_shufflevector(d[0], d[1], 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+}
+inline void sum_lanes(const V16 (&a)[12], float (&sums)[16]) {
+  const V16 s = lane_sums(a);
   __builtin_memcpy(sums, &s, sizeof s);
 }
 
@@ -107,6 +110,16 @@ inline float largest_lane(V16 v) {
   const V4 low = __builtin_shufflevector(v, v, 0, 1, 2, 3), high = __builtin_shufflevector(v, v, 4, 5, 6, 7);
   const V4 m = low > high ? low : high, n = __builtin_shufflevector(m, m, 2, 3, 0, 1), k = m > n ? m : n;
   return max_of(k[0], k[1]);
+}
+
+// The last lane becomes the largest one of `v`. In vectors throughout: a lane that is written to memory by itself
+// delays whoever reads all of them.
+inline V16 with_largest_last(V16 lanes_of, V16 v) {
+  v = larger(v, __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7));
+  v = larger(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11));
+  v = larger(v, __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13));
+  v = larger(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14));
+  return __builtin_shufflevector(lanes_of, v, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 31);
 }
 
 inline V4 load4(const float* p) {

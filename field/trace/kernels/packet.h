@@ -170,6 +170,7 @@ inline void leave_block(const CellPlace& cell, const PacketView& rays, std::uint
     if (any_root) at = first_min(at, exit);
     store8(at, out.t + first);
     store8(block.to_world(load8(roots.undecided + first)), out.undecided + first);
+    store8(block.to_world(load8(roots.searched_from + first)), out.searched_from + first);
     in_time |= static_cast<std::uint64_t>(bits8(at <= ray.t_max)) << first;
     // Where the ray begins in this part, it begins outside.
     const V8d from = load8(out.outside_from + first), here = enter <= ray.t_min ? ray.t_min : exit;

@@ -13,10 +13,9 @@ struct Probe {
   V16 px, py, pz, ex, ey, ez;
 };
 
-// The sums over one list, in lanes of `sums`; what they stand for is told by add_list().
+// The sums over one list, in lanes; what they stand for is told by add_list().
 template <int Exponent>
-inline void sum_list(const float* group, int groups, int exponent, const Probe& probe, V16& nearest,
-                     float (&sums)[16]) {
+inline V16 sum_list(const float* group, int groups, int exponent, const Probe& probe, V16& nearest) {
   V16 a[12] = {};
   for (int k = 0; k < groups; ++k, group += floats_per_group) {
     const V16 dx = probe.px - load(group), dy = probe.py - load(group + 16), dz = probe.pz - load(group + 32);
@@ -38,7 +37,7 @@ inline void sum_list(const float* group, int groups, int exponent, const Probe& 
     a[10] += ka * dz;
     nearest = larger(nearest, inv);
   }
-  sum_lanes(a, sums);
+  return lane_sums(a);
 }
 
 // Adds the sums of a list of exponent m; e is the direction of the ray.
@@ -167,8 +166,9 @@ struct RaySummer {
   RaySums<float>& out;
   template <int Exponent>
   void add(const float* group, int groups, int exponent) const {
+    const V16 sums = sum_list<Exponent>(group, groups, exponent, probe, nearest);
     float s[16];
-    sum_list<Exponent>(group, groups, exponent, probe, nearest, s);
+    __builtin_memcpy(s, &sums, sizeof s);
     add_list(static_cast<float>(Exponent > 0 ? Exponent : exponent), s, ray.direction, out);
   }
 };
@@ -196,7 +196,8 @@ struct PacketSummer {
 
   template <int Exponent>
   void add(const float* group, int groups, int exponent) const {
-    V16 s[16] = {};
+    V16 s[16];
+    for (unsigned left = ~active & 0xffff; left != 0; left &= left - 1) s[__builtin_ctz(left)] = V16{};
     for (unsigned left = active; left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left);
       const Probe probe{splat(at[0][lane]),
@@ -206,10 +207,8 @@ struct PacketSummer {
                         splat(rays.direction[1][lane]),
                         splat(rays.direction[2][lane])};
       V16 close{};
-      float row[16];
-      sum_list<Exponent>(group, groups, exponent, probe, close, row);
-      row[15] = largest_lane(close);
-      __builtin_memcpy(&s[lane], row, sizeof row);
+      const V16 sums = sum_list<Exponent>(group, groups, exponent, probe, close);
+      s[lane] = with_largest_last(sums, close);
     }
     transpose(s);
     add_list(static_cast<float>(Exponent > 0 ? Exponent : exponent), s, rays.direction, out);
