@@ -1,6 +1,8 @@
 // First roots against an independent oracle: none missed, none made up, all in place.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -174,6 +176,37 @@ TEST(FirstRoot, KeepsToTheInterval) {
     EXPECT_FALSE(cells.first_hit(ray));
   }
   EXPECT_GT(hits, 100);
+}
+
+// Where rays are few cells are large, and places in them are rough: not for a thread beside a limb, whose field falls
+// with the degree.
+TEST(FirstRoot, ThreadsAreExactInLargeCellsAtAnyDegree) {
+  RaySpacing few;
+  few.views.push_back({.eye = {}, .constant = std::numeric_limits<double>::infinity()});
+  Random random(77);
+  for (const int n : {4, 8, 12, 20}) {
+    BlendField blend;
+    blend.degree = n;
+    blend.alpha = contact_alpha(n);
+    blend.segments.add({{-1.5, 0, 0}, {1.5, 0.2, 0}, 0.3, 0.25}, {});
+    const Vec3d at{0.3, 0.5, 0.1}, along{0.01, 0.03, -0.02};
+    blend.segments.add({at, at + along, 3e-4, 3e-4}, {});
+    const AllCells cells(blend, {.spacing = std::make_shared<const RaySpacing>(few)});
+    int hits = 0;
+    double largest = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const UnitVec3 direction = UnitVec3::unchecked(random_direction(random));
+      const Vec3d target = at + along * random.between(0, 1) + random.vector(3e-4);
+      const Ray ray{target - direction * 5, direction};
+      const auto hit = cells.first_hit(ray);
+      if (!hit || length(ray.at(hit->t) - target) > 0.01) continue;
+      ++hits;
+      largest = std::max(largest, std::fabs(corrected_value(blend, ray.at(hit->t)) - 1));
+    }
+    EXPECT_GT(hits, 500);
+    EXPECT_LT(largest, 1e-5) << "n=" << n;
+    std::cout << "  n=" << n << ": " << hits << " hits on a thread, the field there is off 1 by " << largest << '\n';
+  }
 }
 
 TEST(FirstRoot, AgreesWithTheOracleWhereEachSkeletonHasItsAngle) {
