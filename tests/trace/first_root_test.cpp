@@ -191,7 +191,9 @@ TEST(FirstRoot, ThreadsAreExactInLargeCellsAtAnyDegree) {
     blend.segments.add({{-1.5, 0, 0}, {1.5, 0.2, 0}, 0.3, 0.25}, {});
     const Vec3d at{0.3, 0.5, 0.1}, along{0.01, 0.03, -0.02};
     blend.segments.add({at, at + along, 3e-4, 3e-4}, {});
-    const AllCells cells(blend, {.spacing = std::make_shared<const RaySpacing>(few)});
+    TraceOptions options;
+    options.spacing = std::make_shared<const RaySpacing>(few);
+    const AllCells cells(blend, options);
     int hits = 0;
     double largest = 0;
     for (int i = 0; i < 2000; ++i) {

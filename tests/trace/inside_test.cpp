@@ -56,5 +56,30 @@ TEST(RayFromInside, LeavesWhereTheFieldFallsToOne) {
   std::cout << "  " << rays << " rays\n";
 }
 
+// Deeper than sums are off, however little: not through the body, and not met at its beginning.
+TEST(RayFromInside, BeginsJustBelowTheSurface) {
+  Random random(78);
+  constexpr double radius = 0.3;
+  for (const int n : {3, 4, 8, 12}) {
+    BlendField field;
+    field.degree = n;
+    field.alpha = std::numbers::pi / 2;
+    field.points.add({{0.1, 0.2, -0.1}, radius}, {});
+    const auto made = BlendTracer::make(field, {});
+    ASSERT_TRUE(made);
+    for (int i = 0; i < 400; ++i) {
+      const Vec3d out = random_direction(random), in = random_direction(random);
+      const double depth = random.between(1.1e-5, 4e-5) * radius / (n - 1);
+      const Ray ray{field.points.skeletons[0].at + out * (radius - depth),
+                    UnitVec3::unchecked(dot(in, out) < 0 ? in : -in)};
+      const double through = -2 * radius * dot(ray.direction.vec(), out);
+      if (through < 0.1 * radius) continue;
+      const auto exit = first_hit(**made, ray, false);
+      ASSERT_TRUE(exit) << "n " << n;
+      EXPECT_NEAR(*exit, through, 1e-3 * radius) << "n " << n;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace marrow::test
