@@ -44,9 +44,9 @@ double rising_root(const Excess& excess, double low, double high) {
   }
   if (at_high < 0) return std::numeric_limits<double>::infinity();
   int side = 0;  // Illinois' variant of regula falsi: halve the end that stays
-  for (int i = 0; i < 80 && high - low > 1e-13 * (1 + std::fabs(high)); ++i) {
+  for (int i = 0; i < 200 && high - low > 1e-13 * (1 + std::fabs(high)); ++i) {
     double mid = (low * at_high - high * at_low) / (at_high - at_low);
-    if (!(mid > low && mid < high) || i % 8 == 7) mid = 0.5 * (low + high);
+    if (!(mid > low && mid < high) || i % 4 == 3) mid = 0.5 * (low + high);
     const double at_mid = excess(mid);
     if (at_mid < 0) {
       low = mid;
@@ -131,9 +131,6 @@ class TurnedCurve {
     // Without a turn u = -x ends at 0; the table goes a little further, so that x = 0 lies inside it.
     end_ = sin_ > 0 ? std::min(y_end, largest_y) * sin_ : 0.01;
     ends_at_axis_ = sin_ > 0 && y_end < largest_y;
-    at_end_ = root(end_);
-    constexpr double short_step = 1e-3;
-    end_slope_ = (at_end_ - root(end_ - short_step)) / short_step;
   }
   double sine() const { return sin_; }
   double cosine() const { return cos_; }
@@ -151,9 +148,10 @@ class TurnedCurve {
         begin_, end_);
   }
 
-  // V(u), which is probably within `known` of a guess. Behind the axis x = 0 it goes on straight: no field comes there.
+  // V(u), which is probably within `known` of a guess. From the axis x = 0 on it is that axis, so that all fields there
+  // are above it, as they should: the curve itself comes in like a high root, and no slope of it would do.
   double value(double u, double guess, double known) const {
-    if (ends_at_axis_ && u > end_) return at_end_ + end_slope_ * (u - end_);
+    if (ends_at_axis_ && u >= end_) return u * cos_ / sin_;
     const double low = std::max(line_of(u).first_v(), guess - known), high = guess + known;
     if (!(low < high) || !(excess(u, low) < 0) || !(excess(u, high) >= 0)) return root(u);
     return rising_root([&](double v) { return excess(u, v); }, low, high);
@@ -172,7 +170,7 @@ class TurnedCurve {
   }
 
   const Correction& correction_;
-  double sin_, cos_, begin_, end_, at_end_, end_slope_;
+  double sin_, cos_, begin_, end_;
   bool ends_at_axis_;
 };
 

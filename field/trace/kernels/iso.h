@@ -59,7 +59,8 @@ inline F nominal_margin_at(const IsoCurve::View& iso, F x, F y) {
 }
 
 // Whether the field is above 1, by the curve itself, and beyond the end of the table by its straight continuation: the
-// table ends where the curve meets the axis x = 0, falling, so that all beyond is inside and above that line.
+// table ends where the curve meets the axis x = 0, falling, and goes on along it, so that all beyond is inside and above
+// that line.
 template <class F>
 inline MaskOf<F> nominally_inside(const IsoCurve::View& iso, F x, F y) {
   return (x > iso.critical) | (curve_at(iso, turned_u(iso, x, y)).value < turned_v(iso, x, y));
