@@ -132,6 +132,7 @@ class TurnedCurve {
     end_ = sin_ > 0 ? std::min(y_end, largest_y) * sin_ : 0.01;
     ends_at_axis_ = sin_ > 0 && y_end < largest_y;
   }
+  bool ends_at_axis() const { return ends_at_axis_; }
   double sine() const { return sin_; }
   double cosine() const { return cos_; }
   double begin() const { return begin_; }
@@ -260,6 +261,7 @@ IsoTable::IsoTable(const Correction& correction, double alpha, double turn, int 
   sin_ = curve.sine();
   cos_ = curve.cosine();
   u_begin_ = curve.begin();
+  ends_at_axis_ = curve.ends_at_axis();
   const auto kink = curve.kink();
   Entries e;
   for (int count = fewest; count <= most; count *= 2) {
@@ -291,13 +293,21 @@ IsoTable::View IsoTable::view() const {
           .cos_theta = static_cast<float>(cos_),
           .two_sided = two_sided_,
           .peak_x = static_cast<float>(peak_x_),
-          .critical = static_cast<float>(critical_ * (1 + 1e-6))};
+          .critical = static_cast<float>(critical_ * (1 + 1e-6)),
+          .lower_beyond = static_cast<float>(beyond(lower_))};
+}
+
+// All that comes behind the axis x = 0 is inside. Elsewhere V does not fall there: for the exact projection it is level
+// (C = 1 where v is that of the reference curve), for the paper's it rises; checked numerically.
+double IsoTable::beyond(const std::vector<float>& table) const {
+  if (ends_at_axis_) return -std::numeric_limits<double>::infinity();
+  return table.back();
 }
 
 double IsoTable::lower(double u) const {
   const double at = (u - u_begin_) / step_;
   if (at <= 0) return lower_.front();
-  if (!(at < static_cast<double>(value_.size() - 1))) return -std::numeric_limits<double>::infinity();
+  if (!(at < static_cast<double>(value_.size() - 1))) return beyond(lower_);
   const auto i = static_cast<std::size_t>(at);
   const double fraction = at - static_cast<double>(i);
   return lower_[i] + (static_cast<double>(lower_[i + 1]) - lower_[i]) * fraction;
@@ -316,8 +326,7 @@ double IsoTable::margin(double x, double y) const { return lower(y * sin_ - x * 
 
 IsoTable::Margins IsoTable::margins(double x, double y) const {
   const double at = std::max(0.0, (y * sin_ - x * cos_ - u_begin_) / step_), v = x * sin_ + y * cos_;
-  constexpr double beyond = -std::numeric_limits<double>::infinity();
-  if (!(at < static_cast<double>(value_.size() - 1))) return {beyond, beyond};
+  if (!(at < static_cast<double>(value_.size() - 1))) return {beyond(value_) - v, beyond(lower_) - v};
   const auto i = static_cast<std::size_t>(at);
   const double fraction = at - static_cast<double>(i);
   const auto between = [&](const std::vector<float>& table) {
@@ -338,7 +347,7 @@ IsoTable::Slope IsoTable::gradient(double x, double y) const {
 
 double IsoTable::nominal(double x, double y) const {
   const double at = std::max(0.0, (y * sin_ - x * cos_ - u_begin_) / step_), v = x * sin_ + y * cos_;
-  if (!(at < static_cast<double>(value_.size() - 1))) return -std::numeric_limits<double>::infinity();
+  if (!(at < static_cast<double>(value_.size() - 1))) return beyond(value_) - v;
   const auto i = static_cast<std::size_t>(at);
   const double fraction = at - static_cast<double>(i);
   return value_[i] + (static_cast<double>(value_[i + 1]) - value_[i]) * fraction - v;

@@ -35,9 +35,10 @@ class IsoTable {
     int size;
     float u_begin, inverse_step;
     float sin_theta, cos_theta;
-    bool two_sided;  ///< alpha < 0: "outside" must be tested at both ends of the interval of x
-    float peak_x;    ///< alpha < 0: where the curve over x is highest
-    float critical;  ///< critical_field_of() the correction, rounded up
+    bool two_sided;      ///< alpha < 0: "outside" must be tested at both ends of the interval of x
+    float peak_x;        ///< alpha < 0: where the curve over x is highest
+    float critical;      ///< critical_field_of() the correction, rounded up
+    float lower_beyond;  ///< V_lower from the last entry on
   };
   View view() const;
 
@@ -50,7 +51,7 @@ class IsoTable {
   double margin(double x, double y) const;
   /// The same by V itself: 0 on the curve.
   double nominal(double x, double y) const;
-  /// Both at once, but minus infinity beyond the end of the table.
+  /// Both at once, but minus infinity beyond an end of the table at the axis x = 0.
   struct Margins {
     double nominal, lower;
   };
@@ -79,9 +80,11 @@ class IsoTable {
   double lower(double u) const;
   double upper(double u) const;
 
+  double beyond(const std::vector<float>& table) const;
+
   double critical_;
   double sin_ = 0, cos_ = 1, u_begin_ = 0, step_ = 1, peak_x_ = 0;
-  bool two_sided_;
+  bool two_sided_, ends_at_axis_;
   std::vector<float> value_, lower_, upper_, slope_;
 };
 

@@ -199,6 +199,23 @@ TEST(IsoCurve, BeyondItsEndAllIsInside) {
     }
 }
 
+// The gradient of a disc is large against its field: a segment of a hundredth of its radius has some 7 (n - 1) at the
+// surface, where tables near the plain sum have ended.
+TEST(IsoCurve, KnowsLargeGradientsNearTheSum) {
+  Random random(37);
+  for (const int n : {3, 4, 8})
+    for (const Projection projection : {Projection::Paper, Projection::Exact})
+      for (const double alpha : {1.5, 1.56, 1.5707, std::numbers::pi / 2 - 1e-9, std::numbers::pi / 2}) {
+        const Correction c(n, alpha, true, projection);
+        const IsoCurve iso(c, alpha);
+        for (int i = 0; i < 2000; ++i) {
+          const double x = random.between(0, 1.2), y = exp(random.between(0, 7)) * (n - 1), value = c.value(x, y);
+          if (iso.outside(0, x, y)) { ASSERT_LT(value, 1) << "n=" << n << " alpha=" << alpha << " y=" << y; }
+          if (alpha > 1.5708 && value < 0.99) { ASSERT_TRUE(iso.outside(0, x, y)) << "n=" << n << " y=" << y; }
+        }
+      }
+}
+
 // For a range of angles: what the border of the cavity branch, a kink, may be off is below the rounding of sums.
 TEST(IsoCurve, HoldsForAllAnglesOfARange) {
   Random random(34);
