@@ -281,6 +281,9 @@ IsoTable::IsoTable(const Correction& correction, double alpha, double turn, int 
     if (p.y > highest) peak_x_ = p.x;
     highest = std::max(highest, p.y);
   }
+  // Level from there on: a slope in float would be wrong by far more than V rises where G is large.
+  if (!ends_at_axis_)
+    for (auto* table : {&value_, &lower_, &upper_, &slope_}) table->push_back(table->back());
 }
 
 IsoTable::View IsoTable::view() const {
