@@ -20,7 +20,7 @@ using namespace marrow;
 using namespace marrow::test;
 
 struct Job {
-  std::uint64_t rays = 100'000, lines = 10'000, first = 1, scenes = 100, varied = 20, odd = 12;
+  std::uint64_t rays = 100'000, lines = 10'000, first = 1, scenes = 100, varied = 20, odd = 24;
   std::uint64_t threads = 2;
 };
 
