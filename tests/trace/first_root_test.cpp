@@ -211,6 +211,35 @@ TEST(FirstRoot, ThreadsAreExactInLargeCellsAtAnyDegree) {
   }
 }
 
+// Between two skeletons the scaled field is not straight: a root by one step from a thousandth of the distance was off
+// by 1e-5 of it.
+TEST(FirstRoot, RootsBetweenSkeletonsAreExact) {
+  Random random(78);
+  double largest = 0;
+  int hits = 0;
+  for (const int n : {4, 6, 8}) {
+    BlendField blend;
+    blend.degree = n;
+    blend.alpha = contact_alpha(n);
+    blend.segments.add({{-1.3, 0, -0.41}, {1.3, 0, -0.41}, 0.4, 0.4}, {});
+    blend.segments.add({{-1.3, -0.2, 0.41}, {1.3, 0.2, 0.41}, 0.4, 0.4}, {});
+    const AllCells cells(blend);
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3d eye = random_direction(random) * 4, target = random.vector(0.6);
+      const Ray ray{eye, normalize(target - eye)};
+      const auto hit = cells.first_hit(ray);
+      if (!hit) continue;
+      const BlendSample exact = evaluate(blend, ray.at(hit->t));
+      if (!(dot(exact.corrected_gradient, ray.direction) > 0.1 * length(exact.corrected_gradient))) continue;
+      ++hits;
+      largest = std::max(largest, std::fabs(exact.corrected - 1));
+    }
+  }
+  std::cout << "  " << hits << " hits; the field there is off 1 by " << largest << '\n';
+  EXPECT_GT(hits, 3000);
+  EXPECT_LT(largest, 2.5e-6);
+}
+
 TEST(FirstRoot, AgreesWithTheOracleWhereEachSkeletonHasItsAngle) {
   Random random(75);
   Tally all;
