@@ -20,8 +20,8 @@ constexpr double largest_group = 0.25, largest_coarse_group = 0.5, open_all = Ne
 // How large a cell may be where rays are few, of the local radius.
 constexpr double most_radii = 12;
 
-// How large a cell may be, of the thinnest radius close by. Places in float are off by some 3e-8 half sides, which moves
-// the field by n - 1 times that over the radius: 2e-6 here, 3e-6 where hardly a ray comes.
+// How large a cell may be, of the thinnest radius close by. Places in float are off by some 3e-8 half sides, which
+// moves the field by n - 1 times that over the radius: 2e-6 here, 3e-6 where hardly a ray comes.
 double most_thinnest(int degree) { return 60.0 / (degree - 1); }
 double most_thinnest_if_hardly_met(int degree) { return std::min(32.0, 96.0 / (degree - 1)); }
 
