@@ -17,8 +17,13 @@ namespace {
 // Of the half side of a cube: groups up to this size are passed on unopened to the cubes inside it.
 constexpr double largest_group = 0.25, largest_coarse_group = 0.5, open_all = NearFar::open_all;
 
-// How large a cell may be where rays are few: of the local radius, and of the thinnest one.
-constexpr double most_radii = 12, most_thinnest = 32;
+// How large a cell may be where rays are few, of the local radius.
+constexpr double most_radii = 12;
+
+// How large a cell may be, of the thinnest radius close by. Places in float are off by some 3e-8 half sides, which
+// moves the field by n - 1 times that over the radius: 2e-6 here, 3e-6 where hardly a ray comes.
+double most_thinnest(int degree) { return 60.0 / (degree - 1); }
+double most_thinnest_if_hardly_met(int degree) { return std::min(32.0, 96.0 / (degree - 1)); }
 
 // Squared, of a point outside; 0 inside.
 double distance2(const Box3& box, const Vec3d& p) {
@@ -59,7 +64,9 @@ CellTree::CellTree(const SourceTree& sources, const NearFar& coarse, const NearF
       coarse_(coarse),
       fine_(fine),
       divider_(sources, coarse, iso, kernels, degree),
-      settings_(settings) {
+      settings_(settings),
+      most_thinnest_(most_thinnest(degree)),
+      most_thinnest_if_hardly_met_(most_thinnest_if_hardly_met(degree)) {
   if (sources.pieces().empty()) return;
   std::vector<CubeView> level{divider_.root()};
   for (int depth = 1; !level.empty(); ++depth) {
@@ -136,16 +143,18 @@ Surroundings CellTree::coarse_around(const TilePlace& place) const {
 // A cell of many radii, but of so few rays that long lists cost less than more cells.
 bool CellTree::is_hardly_met(const Divider::Octant& octant, const Vec3d& center, double half) const {
   constexpr double very_few = 0.625;  // of the rays below which a cell is hardly worth making
-  return settings_.spacing && half > most_radii * octant.local_radius && half <= most_thinnest * octant.thinnest &&
+  return settings_.spacing && half > most_radii * octant.local_radius &&
+         half <= most_thinnest_if_hardly_met_ * octant.thinnest &&
          half <= very_few * settings_.spacing->least_cell(center, half);
 }
 
 // A cell narrower than some rays is hardly worth making; but beyond some radii its lists grow too long, and beyond some
-// of the thinnest radii positions in float are too rough (Divider).
+// of the thinnest radii positions in float are too rough.
 bool CellTree::is_small_enough(const Divider::Octant& octant, const Vec3d& center, double half, int level) const {
-  if (half <= settings_.cell_size * octant.local_radius || level >= settings_.deepest_level) return true;
-  if (is_hardly_met(octant, center, half)) return true;
-  return settings_.spacing && half <= most_radii * octant.local_radius && half <= most_thinnest * octant.thinnest &&
+  if (level >= settings_.deepest_level || is_hardly_met(octant, center, half)) return true;
+  if (half > most_thinnest_ * octant.thinnest) return false;
+  if (half <= settings_.cell_size * octant.local_radius) return true;
+  return settings_.spacing && half <= most_radii * octant.local_radius &&
          half <= settings_.spacing->least_cell(center, half);
 }
 

@@ -83,6 +83,7 @@ class CellTree {
   const NearFar& fine_;
   Divider divider_;
   CellTreeSettings settings_;
+  double most_thinnest_, most_thinnest_if_hardly_met_;
   std::vector<TilePlace> places_;
   std::unique_ptr<Lazy<Tile>[]> tiles_;
 };

@@ -1,11 +1,12 @@
 // The curve on which the corrected field of one angle is 1, as a table: "outside?" without evaluating the operator.
 //
 // In the plane of x = f and y = |grad_S f| the operator C is isotone in both for alpha >= 0 (tracing.md 3.3),
-// so {C < 1} is a region below one curve. It is stored in coordinates turned by theta = max(alpha, 0),
+// so {C < 1} is a region below one curve. It is stored in coordinates turned by theta = alpha, or a little more where
+// alpha is near 0 or below it,
 //   u = y sin theta - x cos theta,   v = x sin theta + y cos theta,
 // because the operator projects along lines of constant v: C(x, y) < 1  <=>  v < V(u), with V nearly constant.
-// For alpha < 0 C is isotone in y and first falls, then rises in x; theta = 0 then gives V(-x) = Y(x), which
-// first rises, then falls, so that its minimum over an interval of x is at an end.
+// For alpha < 0 C is isotone in y and first falls, then rises in x: the curve over x first rises, then falls, so that
+// its minimum over an interval of x is at an end.
 #pragma once
 
 #include <vector>
@@ -19,10 +20,13 @@ double critical_field_of(const Correction&);
 
 class IsoTable {
  public:
-  /// Needs a finite critical field. At least `entry_count` entries: where the curve comes to the border of the cavity
-  /// branch it has a kink, and steps are so much shorter that an entry stands there. A line across the kink would be
-  /// off by up to 2e-4, and C by up to 4e-5.
-  IsoTable(const Correction&, double alpha, int entry_count = 2048);
+  /// Needs a finite critical field. So many entries that C is off by no more than sums in float, but where its slope is
+  /// not bounded (G = 0 without cavity). Where the curve comes to the border of the cavity branch it has a kink, and
+  /// steps are so much shorter that an entry stands there: a line across it would be off by up to 2e-4, and C by up to
+  /// 4e-5.
+  IsoTable(const Correction&, double alpha);
+  /// One of a range of angles, turned as smoothly as the angle changes: at least `entry_count` entries.
+  IsoTable(const Correction&, double alpha, int entry_count);
 
   /// Piecewise linear over u in [u_begin, u_begin + (size - 1) / inverse_step]; entries as float, sorted by u.
   struct View {
@@ -31,9 +35,10 @@ class IsoTable {
     int size;
     float u_begin, inverse_step;
     float sin_theta, cos_theta;
-    bool two_sided;  ///< alpha < 0: "outside" must be tested at both ends of the interval of x
-    float peak_x;    ///< alpha < 0: where the curve over x is highest
-    float critical;  ///< critical_field_of() the correction, rounded up
+    bool two_sided;      ///< alpha < 0: "outside" must be tested at both ends of the interval of x
+    float peak_x;        ///< alpha < 0: where the curve over x is highest
+    float critical;      ///< critical_field_of() the correction, rounded up
+    float lower_beyond;  ///< V_lower from the last entry on
   };
   View view() const;
 
@@ -46,7 +51,7 @@ class IsoTable {
   double margin(double x, double y) const;
   /// The same by V itself: 0 on the curve.
   double nominal(double x, double y) const;
-  /// Both at once, but minus infinity beyond the end of the table.
+  /// Both at once, but minus infinity beyond an end of the table at the axis x = 0.
   struct Margins {
     double nominal, lower;
   };
@@ -71,12 +76,15 @@ class IsoTable {
   bool two_sided() const { return two_sided_; }
 
  private:
+  IsoTable(const Correction&, double alpha, double turn, int fewest_entries, int most_entries);
   double lower(double u) const;
   double upper(double u) const;
 
+  double beyond(const std::vector<float>& table) const;
+
   double critical_;
   double sin_ = 0, cos_ = 1, u_begin_ = 0, step_ = 1, peak_x_ = 0;
-  bool two_sided_;
+  bool two_sided_, ends_at_axis_;
   std::vector<float> value_, lower_, upper_, slope_;
 };
 

@@ -19,14 +19,15 @@ class Random {
   struct Silent {};
   Random(std::uint64_t seed, Silent) : state_(seed) {}
 
-  double between(double low, double high) {
-    state_ += 0x9e3779b97f4a7c15u;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    z ^= z >> 31;
-    return low + (high - low) * (static_cast<double>(z >> 11) * 0x1p-53);
+  /// One of many streams of numbers that have nothing in common. Seeds that differ by multiples of the step of the
+  /// generator would share one stream, shifted.
+  static Random stream(std::uint64_t number) {
+    Random random(number, Silent{});
+    random.state_ = random.next();
+    return random;
   }
+
+  double between(double low, double high) { return low + (high - low) * (static_cast<double>(next() >> 11) * 0x1p-53); }
   int whole(int low, int high) { return low + static_cast<int>(between(0, high - low + 1)); }
   Vec3d vector(double extent) {
     const double x = between(-extent, extent), y = between(-extent, extent);
@@ -62,6 +63,14 @@ class Random {
   }
 
  private:
+  std::uint64_t next() {
+    state_ += 0x9e3779b97f4a7c15u;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+  }
+
   std::uint64_t state_;
 };
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "field/math/elementary.h"
+
 namespace marrow::test {
 namespace {
 
@@ -125,12 +127,23 @@ Ray spawned(Random& random, const StressScene& s) {
   return {hit->outside, normalize(direction)};
 }
 
+// Along the surface, or from a place beside it in any direction: from 1e-9 of the distance to the skeleton on to either
+// side.
+Ray beside_surface(Random& random, const StressScene& s, const SurfaceHit& hit) {
+  const double away = s.oracle().skeleton_distance(hit.position) * pow(10, random.between(-9, -1));
+  const Vec3d normal = hit.normal.vec(), p = hit.position + normal * (random.between(0, 1) < 0.5 ? away : -away);
+  const Vec3d direction = random_direction(random), flat = direction - normal * dot(direction, normal);
+  if (random.between(0, 1) < 0.5) return {p, normalize(direction)};
+  return through(p, normalize(flat), s);
+}
+
 // Beginning as nearly on the exact surface as a double can tell, on either side of it, at about a right angle or in the
-// tangent plane.
+// tangent plane; of odd scenes also farther away.
 Ray on_surface(Random& random, const StressScene& s) {
   const Ray ray = random.between(0, 1) < 0.5 ? chord(random, s) : focus(random, s);
   const auto hit = s.surfaces().first_hit(ray);
   if (!hit) return chord(random, s);
+  if (s.is_odd() && random.between(0, 1) < 0.7) return beside_surface(random, s, *hit);
   Vec3d p = hit->position;
   for (int i = 0; i < 3; ++i) {
     const BlendSample here = evaluate(s.blend(), p);

@@ -14,8 +14,9 @@
 namespace marrow::test {
 
 inline constexpr std::array kind_names{
-    "skeletons", "thin feature", "nearly touching", "ring",  "loop",  "degenerate", "ratios",     "far away", "angles",
-    "strands",   "star",         "bundle",          "jumps", "graph", "lattice",    "high degree"};
+    "skeletons", "thin feature", "nearly touching", "ring",  "loop",  "degenerate", "ratios",      "far away", "angles",
+    "strands",   "star",         "bundle",          "jumps", "graph", "lattice",    "high degree", "touching", "cones",
+    "hair",      "stubs",        "hollow",          "dust"};
 
 /// Of them, those with one angle come first, then those of varying angles, in scenes from the first of these numbers
 /// on, then odd ones, as nobody would model them, from the second on.

@@ -30,7 +30,7 @@ struct Outcome {
 Outcome run_scene(const Job& job, std::uint64_t number) {
   Outcome out;
   const TreeScene scene(number);
-  Random random(number * 0x9e3779b97f4a7c15u + 1, Random::Silent{});
+  Random random = Random::stream(number);
   // Blends of every kernel take ten times as long.
   const std::uint64_t share = scene.kind() == kernels_kind ? 10 : 1;
   for (std::uint64_t i = 0; i < job.rays / job.trees / share; ++i) {

@@ -136,9 +136,12 @@ void judge_free_way(const StressScene& scene, const Ray& ray, double end, const 
   note(certified ? v.missed_rays : v.lost_rays, text(scene, ray, family, certified ? "missed" : "lost", excess));
 }
 
-// A ray that begins inside meets the surface where it leaves: nothing worth mentioning may be outside before.
+// A ray that begins inside meets the surface where it leaves: nothing worth mentioning may be outside before. Where it
+// leaves along the surface the field may rise and fall; only of a beginning that is nearly on the surface that tells
+// which way the ray came.
 bool leaves_from_inside(const StressScene& scene, const Ray& ray, const BlendSample& at_hit) {
-  return dot(at_hit.corrected_gradient, ray.direction) < 0 && scene.oracle().value(ray.at(ray.t_min)) >= 1;
+  const double depth = scene.oracle().value(ray.at(ray.t_min)) - 1;
+  return depth >= scene.grazing_excess() || (depth >= 0 && dot(at_hit.corrected_gradient, ray.direction) < 0);
 }
 
 void judge_way_inside(const StressScene& scene, const Ray& ray, double end, bool certified, const char* family,

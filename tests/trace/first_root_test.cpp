@@ -1,6 +1,8 @@
 // First roots against an independent oracle: none missed, none made up, all in place.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -174,6 +176,68 @@ TEST(FirstRoot, KeepsToTheInterval) {
     EXPECT_FALSE(cells.first_hit(ray));
   }
   EXPECT_GT(hits, 100);
+}
+
+// Where rays are few cells are large, and places in them are rough: not for a thread beside a limb, whose field falls
+// with the degree.
+TEST(FirstRoot, ThreadsAreExactInLargeCellsAtAnyDegree) {
+  RaySpacing few;
+  few.views.push_back({.eye = {}, .constant = std::numeric_limits<double>::infinity()});
+  Random random(77);
+  for (const int n : {4, 8, 12, 20}) {
+    BlendField blend;
+    blend.degree = n;
+    blend.alpha = contact_alpha(n);
+    blend.segments.add({{-1.5, 0, 0}, {1.5, 0.2, 0}, 0.3, 0.25}, {});
+    const Vec3d at{0.3, 0.5, 0.1}, along{0.01, 0.03, -0.02};
+    blend.segments.add({at, at + along, 3e-4, 3e-4}, {});
+    TraceOptions options;
+    options.spacing = std::make_shared<const RaySpacing>(few);
+    const AllCells cells(blend, options);
+    int hits = 0;
+    double largest = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const UnitVec3 direction = UnitVec3::unchecked(random_direction(random));
+      const Vec3d target = at + along * random.between(0, 1) + random.vector(3e-4);
+      const Ray ray{target - direction * 5, direction};
+      const auto hit = cells.first_hit(ray);
+      if (!hit || length(ray.at(hit->t) - target) > 0.01) continue;
+      ++hits;
+      largest = std::max(largest, std::fabs(corrected_value(blend, ray.at(hit->t)) - 1));
+    }
+    EXPECT_GT(hits, 500);
+    EXPECT_LT(largest, 1e-5) << "n=" << n;
+    std::cout << "  n=" << n << ": " << hits << " hits on a thread, the field there is off 1 by " << largest << '\n';
+  }
+}
+
+// Between two skeletons the scaled field is not straight: a root by one step from a thousandth of the distance was off
+// by 1e-5 of it.
+TEST(FirstRoot, RootsBetweenSkeletonsAreExact) {
+  Random random(78);
+  double largest = 0;
+  int hits = 0;
+  for (const int n : {4, 6, 8}) {
+    BlendField blend;
+    blend.degree = n;
+    blend.alpha = contact_alpha(n);
+    blend.segments.add({{-1.3, 0, -0.41}, {1.3, 0, -0.41}, 0.4, 0.4}, {});
+    blend.segments.add({{-1.3, -0.2, 0.41}, {1.3, 0.2, 0.41}, 0.4, 0.4}, {});
+    const AllCells cells(blend);
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3d eye = random_direction(random) * 4, target = random.vector(0.6);
+      const Ray ray{eye, normalize(target - eye)};
+      const auto hit = cells.first_hit(ray);
+      if (!hit) continue;
+      const BlendSample exact = evaluate(blend, ray.at(hit->t));
+      if (!(dot(exact.corrected_gradient, ray.direction) > 0.1 * length(exact.corrected_gradient))) continue;
+      ++hits;
+      largest = std::max(largest, std::fabs(exact.corrected - 1));
+    }
+  }
+  std::cout << "  " << hits << " hits; the field there is off 1 by " << largest << '\n';
+  EXPECT_GT(hits, 3000);
+  EXPECT_LT(largest, 2.5e-6);
 }
 
 TEST(FirstRoot, AgreesWithTheOracleWhereEachSkeletonHasItsAngle) {

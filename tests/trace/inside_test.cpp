@@ -1,5 +1,7 @@
 // Rays that begin inside: the first hit is where they leave, and occluded rays agree.
 #include <cmath>
+#include <limits>
+#include <memory>
 
 #include <gtest/gtest.h>
 
@@ -54,6 +56,59 @@ TEST(RayFromInside, LeavesWhereTheFieldFallsToOne) {
     }
   EXPECT_GT(rays, 300);
   std::cout << "  " << rays << " rays\n";
+}
+
+// The body of a short segment is far smaller than its radius, and so than the cells around it.
+TEST(RayFromInside, LeavesBodiesMuchSmallerThanTheirRadius) {
+  Random random(79);
+  RaySpacing few;
+  few.views.push_back({.eye = {}, .constant = std::numeric_limits<double>::infinity()});
+  TraceOptions options;
+  options.spacing = std::make_shared<const RaySpacing>(few);
+  options.cells = {.cell_size = 1.6, .tile_levels = 2};
+  for (const int n : {3, 4, 8})
+    for (const double length : {1e-3, 1e-5, 1e-7}) {
+      BlendField field;
+      field.degree = n;
+      field.alpha = 1e-9;
+      field.segments.add({{0.3, 0.2, 0.1}, Vec3d{0.3, 0.2, 0.1} + random_direction(random) * (length * 0.1), 0.1, 0.1},
+                         {});
+      field.points.add({{2, 0, 0}, 0.1}, {});
+      const Oracle oracle(field);
+      const auto made = BlendTracer::make(field, options);
+      ASSERT_TRUE(made);
+      for (int i = 0; i < 100; ++i) {
+        const Ray ray{field.segments.skeletons[0].from, UnitVec3::unchecked(random_direction(random))};
+        const auto exit = first_hit(**made, ray, false);
+        ASSERT_TRUE(exit) << "n " << n;
+        EXPECT_NEAR(oracle.value(ray.at(*exit)), 1, 1e-4) << "n " << n << " length " << length;
+      }
+    }
+}
+
+// Deeper than sums are off, however little: not through the body, and not met at its beginning.
+TEST(RayFromInside, BeginsJustBelowTheSurface) {
+  Random random(78);
+  constexpr double radius = 0.3;
+  for (const int n : {3, 4, 8, 12}) {
+    BlendField field;
+    field.degree = n;
+    field.alpha = std::numbers::pi / 2;
+    field.points.add({{0.1, 0.2, -0.1}, radius}, {});
+    const auto made = BlendTracer::make(field, {});
+    ASSERT_TRUE(made);
+    for (int i = 0; i < 400; ++i) {
+      const Vec3d out = random_direction(random), in = random_direction(random);
+      const double depth = random.between(1.1e-5, 4e-5) * radius / (n - 1);
+      const Ray ray{field.points.skeletons[0].at + out * (radius - depth),
+                    UnitVec3::unchecked(dot(in, out) < 0 ? in : -in)};
+      const double through = -2 * radius * dot(ray.direction.vec(), out);
+      if (through < 0.1 * radius) continue;
+      const auto exit = first_hit(**made, ray, false);
+      ASSERT_TRUE(exit) << "n " << n;
+      EXPECT_NEAR(*exit, through, 1e-3 * radius) << "n " << n;
+    }
+  }
 }
 
 }  // namespace

@@ -79,8 +79,9 @@ inline RootOf<float> exit_in(const BlockView& block, const LocalRay& ray, const 
   return root;
 }
 
-// Nearer to 1 than this, neighbouring blocks may differ about the side.
-inline constexpr float clearly_inside = 2e-5F;
+// Nearer to 1 than this neighbouring blocks may differ about the side, as sums are off by up to 5e-6. What is taken to
+// be outside for it is then no more than 1e-5 deep.
+inline constexpr float clearly_inside = 5e-6F;
 
 // Whether the ray is inside at t, by the coarse level where that can tell.
 template <Angle Rule>

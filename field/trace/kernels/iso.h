@@ -33,7 +33,7 @@ inline CurveValue<F> curve_at(const IsoCurve::View& iso, F u) {
 template <class F>
 inline F lower_curve_at(const IsoCurve::View& iso, F u) {
   const CurvePlace<F> place(iso, u);
-  return select(place.at >= place.last, all_lanes<F>(-infinity), place.in(iso.lower).value);
+  return select(place.at >= place.last, all_lanes<F>(iso.lower_beyond), place.in(iso.lower).value);
 }
 
 template <class F>
@@ -55,11 +55,13 @@ inline F margin_at(const IsoCurve::View& iso, F x, F y) {
 template <class F>
 inline F nominal_margin_at(const IsoCurve::View& iso, F x, F y) {
   const CurvePlace<F> place(iso, turned_u(iso, x, y));
-  return select(place.at < place.last, place.in(iso.value).value - turned_v(iso, x, y), all_lanes<F>(-infinity));
+  const MaskOf<F> known = (place.at < place.last) | (all_lanes<F>(iso.lower_beyond) > -infinity);
+  return select(known, place.in(iso.value).value - turned_v(iso, x, y), all_lanes<F>(-infinity));
 }
 
 // Whether the field is above 1, by the curve itself, and beyond the end of the table by its straight continuation: the
-// table ends where the curve meets the axis x = 0, falling, so that all beyond is inside and above that line.
+// table ends where the curve meets the axis x = 0, falling, and goes on along it, so that all beyond is inside and
+// above that line.
 template <class F>
 inline MaskOf<F> nominally_inside(const IsoCurve::View& iso, F x, F y) {
   return (x > iso.critical) | (curve_at(iso, turned_u(iso, x, y)).value < turned_v(iso, x, y));

@@ -238,14 +238,14 @@ struct Marcher {
   }
 
   // Deep inside no gradient can bring the field below 1, and f falls at most as if all of it came from the nearest
-  // source: f(t + h) >= f(t) (1 + |h| / d)^-n. Beside a source, where sums overflow, a hundredth of the half side stays
-  // inside, because cells are no larger than some radii of what is in them (Divider).
+  // source: f(t + h) >= f(t) (1 + |h| / d)^-n. Where sums overflow they are known to be large, and on a source itself
+  // the ray goes on by what places in float are off, which no surface is nearer than.
   float deep_step(const Sample& p) const {
-    constexpr float beside_source = 0.01F;
-    if (!(p.s.f < 1e30F)) return beside_source;
-    if (!(p.s.f > block.iso.critical)) return 0;
-    const float step = 0.98F * p.distance * (inverse_root(block.iso.critical / p.s.f, block.degree) - 1);
-    return p.distance < 0.1F * beside_source ? max_of(step, beside_source) : max_of(step, 0);
+    constexpr float largest = 1e30F, least_step = 1e-6F;
+    const float f = p.s.f < largest ? p.s.f : largest;
+    if (!(f > block.iso.critical)) return 0;
+    const float step = 0.98F * p.distance * (inverse_root(block.iso.critical / f, block.degree) - 1);
+    return f < largest ? max_of(step, 0) : max_of(step, least_step);
   }
 
   // The largest certified step from p in direction `sign`, at most `limit`; 0 when none was found.

@@ -197,15 +197,21 @@ struct Search {
                   0.5F * (front + right));
   }
 
-  // Newton's root from the last outside sample, when it is proved: the certificate reaches it to within the shortest
-  // gap, and the field is above 1 just behind it. The step is so short that the scaled Newton step, whose error is of
-  // third order, is exact to float.
+  // The root between two samples near by, by the cubic through both, or Newton's from the last outside one, when it is
+  // proved: the certificate reaches it to within the shortest gap, and the field is above 1 just behind it. Newton's
+  // step is so short that its error is some ulp: near one skeleton of third order, where several bend the scaled field
+  // of second.
   Mask pinned(Mask rays, F& root) const {
+    constexpr float longest_step = 6e-4F;
     rays = rays & have_last;
     if (!any(rays)) return rays;
-    const F step = last.newton_step(), tolerance = shortest_gap * last.distance;
+    const F tolerance = shortest_gap * last.distance;
+    const Mask between =
+        rays & bracketed() & (inside.t - last.t < 0.02F * last.distance) & (inside.scaled_slope < 0.0F);
+    F step = last.newton_step();
+    if (any(between)) step = select(between, hermite_root() - last.t, step);
     root = select(rays, max_of(front, last.t + step), root);
-    const Mask close = rays & (last.scaled_slope < 0.0F) & (step < 1.2e-3F * last.distance) &
+    const Mask close = rays & (last.scaled_slope < 0.0F) & (between | (step < longest_step * last.distance)) &
                        (root - front < tolerance) & (root <= end);
     if (!any(close)) return close;
     const Mask ends = close & bracketed() & (inside.t - root < tolerance), open = close & !ends;
