@@ -11,12 +11,9 @@
 
 #include <vector>
 
+#include "field/trace/turned_curve.h"
+
 namespace marrow {
-
-class Correction;
-
-/// The f with C(f, 0) = 1; infinite when there is none.
-double critical_field_of(const Correction&);
 
 class IsoTable {
  public:
@@ -77,10 +74,13 @@ class IsoTable {
 
  private:
   IsoTable(const Correction&, double alpha, double turn, int fewest_entries, int most_entries);
+  double u_of(double x, double y) const { return y * sin_ - x * cos_; }
+  double v_of(double x, double y) const { return x * sin_ + y * cos_; }
+  double place(double u) const;
+  bool is_beyond(double place) const;
+  double beyond(const std::vector<float>& table) const;
   double lower(double u) const;
   double upper(double u) const;
-
-  double beyond(const std::vector<float>& table) const;
 
   double critical_;
   double sin_ = 0, cos_ = 1, u_begin_ = 0, step_ = 1, peak_x_ = 0;

@@ -1,0 +1,53 @@
+// The curve on which the corrected field of one angle is 1, in the turned coordinates of iso_table.h.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+namespace marrow {
+
+class Correction;
+
+/// The f with C(f, 0) = 1; infinite when there is none.
+double critical_field_of(const Correction&);
+
+/// Points of the quarter plane x, y >= 0 on the line of given u.
+struct TurnedLine {
+  double u, sin_theta, cos_theta;
+
+  /// The operator is 0 at f = 0 by definition; the curve is that of its limit.
+  static constexpr double least_x = 1e-9;
+
+  double x(double v) const { return std::max(least_x, v * sin_theta - u * cos_theta); }
+  double y(double v) const { return std::max(0.0, u * sin_theta + v * cos_theta); }
+  double first_v() const;
+};
+
+/// V(u) from where the curve meets the axis G = 0 on.
+class TurnedCurve {
+ public:
+  /// Turned by `turn`, 0 to pi/2. The correction must outlive the curve; its critical field must be finite.
+  TurnedCurve(const Correction&, double critical_field, double turn);
+
+  double sine() const { return sin_; }
+  double cosine() const { return cos_; }
+  double begin() const { return begin_; }  ///< the u of the axis G = 0
+  double end() const { return end_; }
+  /// Whether it ends where it nears the axis x = 0; else it goes on.
+  bool ends_at_axis() const { return ends_at_axis_; }
+  /// The u where it comes to the border of the cavity branch, if it does.
+  std::optional<double> kink() const;
+  /// V(u), sooner when it is within `known` of a guess. From the axis x = 0 on it is that axis.
+  double value(double u, double guess, double known) const;
+  TurnedLine line_of(double u) const { return {u, sin_, cos_}; }
+
+ private:
+  double excess(double u, double v) const;
+  double root(double u) const;
+
+  const Correction& correction_;
+  double sin_, cos_, begin_, end_;
+  bool ends_at_axis_;
+};
+
+}  // namespace marrow
