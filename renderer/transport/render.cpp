@@ -116,7 +116,7 @@ void render_pass(const Job& job, const std::vector<PixelWindow>& tiles, Pass pas
   });
 }
 
-// What divides space for them is found by all rays sooner in surfaces that are refined.
+// Before the first pass: all its rays then meet space that is divided, through surfaces that are refined.
 void scout(const Job& job, const PixelWindow& window) {
   for (const int step : scout_steps) {
     for_each_tile(job, tiles_of(window, scouted_side(step)),

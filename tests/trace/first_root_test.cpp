@@ -1,8 +1,6 @@
 // First roots against an independent oracle: none missed, none made up, all in place.
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -10,6 +8,7 @@
 
 #include "field/trace/far_field.h"
 #include "tests/trace/all_cells.h"
+#include "tests/trace/large_cells.h"
 #include "tests/trace/oracle.h"
 #include "tests/trace/random_rays.h"
 
@@ -181,8 +180,6 @@ TEST(FirstRoot, KeepsToTheInterval) {
 // Where rays are few cells are large, and places in them are rough: not for a thread beside a limb, whose field falls
 // with the degree.
 TEST(FirstRoot, ThreadsAreExactInLargeCellsAtAnyDegree) {
-  RaySpacing few;
-  few.views.push_back({.eye = {}, .constant = std::numeric_limits<double>::infinity()});
   Random random(77);
   for (const int n : {4, 8, 12, 20}) {
     BlendField blend;
@@ -191,9 +188,7 @@ TEST(FirstRoot, ThreadsAreExactInLargeCellsAtAnyDegree) {
     blend.segments.add({{-1.5, 0, 0}, {1.5, 0.2, 0}, 0.3, 0.25}, {});
     const Vec3d at{0.3, 0.5, 0.1}, along{0.01, 0.03, -0.02};
     blend.segments.add({at, at + along, 3e-4, 3e-4}, {});
-    TraceOptions options;
-    options.spacing = std::make_shared<const RaySpacing>(few);
-    const AllCells cells(blend, options);
+    const AllCells cells(blend, large_cells());
     int hits = 0;
     double largest = 0;
     for (int i = 0; i < 2000; ++i) {

@@ -1,12 +1,11 @@
 // Rays that begin inside: the first hit is where they leave, and occluded rays agree.
 #include <cmath>
-#include <limits>
-#include <memory>
 
 #include <gtest/gtest.h>
 
 #include "field/trace/blend_tracer.h"
 #include "tests/trace/first_of_tiles.h"
+#include "tests/trace/large_cells.h"
 #include "tests/trace/oracle.h"
 #include "tests/trace/random_scene.h"
 
@@ -61,10 +60,7 @@ TEST(RayFromInside, LeavesWhereTheFieldFallsToOne) {
 // The body of a short segment is far smaller than its radius, and so than the cells around it.
 TEST(RayFromInside, LeavesBodiesMuchSmallerThanTheirRadius) {
   Random random(79);
-  RaySpacing few;
-  few.views.push_back({.eye = {}, .constant = std::numeric_limits<double>::infinity()});
-  TraceOptions options;
-  options.spacing = std::make_shared<const RaySpacing>(few);
+  TraceOptions options = large_cells();
   options.cells = {.cell_size = 1.6, .tile_levels = 2};
   for (const int n : {3, 4, 8})
     for (const double length : {1e-3, 1e-5, 1e-7}) {

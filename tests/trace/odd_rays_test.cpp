@@ -1,13 +1,12 @@
 // Rays as no camera makes them: directions that are all but parallel to axes, and beginnings exactly in skeletons.
 #include <cmath>
-#include <limits>
-#include <memory>
 #include <optional>
 
 #include <gtest/gtest.h>
 
 #include "field/math/elementary.h"
 #include "tests/trace/first_of_tiles.h"
+#include "tests/trace/large_cells.h"
 #include "tests/trace/oracle.h"
 #include "tests/trace/random_rays.h"
 
@@ -41,14 +40,6 @@ TEST(OddRays, ANegligibleComponentChangesNothing) {
     }
   }
   EXPECT_GT(hits, 1000);
-}
-
-TraceOptions large_cells() {
-  RaySpacing few;
-  few.views.push_back({.eye = {}, .constant = std::numeric_limits<double>::infinity()});
-  TraceOptions options;
-  options.spacing = std::make_shared<const RaySpacing>(few);
-  return options;
 }
 
 // Where the operator changes its branch the curve that the tracer reads has a kink.

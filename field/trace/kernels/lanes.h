@@ -112,8 +112,7 @@ inline float largest_lane(V16 v) {
   return max_of(k[0], k[1]);
 }
 
-// The last lane becomes the largest one of `v`. In vectors throughout: a lane that is written to memory by itself
-// delays whoever reads all of them.
+// The last lane becomes the largest one of `v`.
 inline V16 with_largest_last(V16 lanes_of, V16 v) {
   v = larger(v, __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7));
   v = larger(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11));
