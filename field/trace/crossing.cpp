@@ -26,6 +26,7 @@ class Search {
       : tree_(tree), record_(record), ray_(ray), any_(any) {}
 
   CrossingSearch run(double begin, double end) {
+    nearby_ = std::max(max_component(abs(ray_.at(begin))), max_component(abs(ray_.at(end))));
     // Pieces still to be searched, nearest last.
     open_.push_back({begin, end, Side::Unknown, Side::Unknown});
     while (!open_.empty() && !found_.t) {
@@ -141,9 +142,9 @@ class Search {
 
   // Of t, or of the coordinates that the ray runs through.
   double size(double t) const { return std::max(std::fabs(t), max_component(abs(ray_.origin))); }
-  // Sums of a blend are known to 3e-11 of themselves: shorter pieces than 2^-34 (6e-11) say nothing new. It is far
-  // below the ulp of a float.
-  double gap(double t) const { return 0x1p-34 * size(t); }
+  // Sums of a blend are known to 3e-11 of themselves: pieces shorter than 2^-34 (6e-11) of coordinates there say
+  // nothing new. It is far below the ulp of a float. Where the ray comes from far away, places are rounded by more.
+  double gap(double t) const { return std::max(0x1p-34 * nearby_, 0x1p-48 * size(t)); }
   static double length(const Piece& piece) { return piece.end - piece.begin; }
   bool is_short(const Piece& piece) const { return length(piece) <= gap(piece.end); }
 
@@ -176,6 +177,7 @@ class Search {
   bool any_;
   std::uint32_t allowed_ = first_evaluations;
   double coarseness_ = 1;  // of what is short, over gap()
+  double nearby_ = 0;      // the largest coordinate on the stretch
   std::vector<Piece> open_;
   CrossingSearch found_;
 };

@@ -150,20 +150,35 @@ bool TreeTracer::is_covered(std::uint32_t member, const Ray& ray, double t) cons
 }
 
 // Whether the ray goes on from the member into another one, or the other way, through a common face: members are above
-// 1 before and behind, and bounds prove that between no more is outside than what sums are off.
+// 1 before and behind, and bounds prove that between no more is outside than what sums and positions are off.
 bool TreeTracer::is_joint(std::uint32_t member, const Ray& ray, double t) const {
   constexpr double reach = 1e-11, rounding_of_sums = 1e-13, sums_are_off = 1e-10;
-  const double by = reach * std::max(std::fabs(t), max_component(abs(ray.origin)));
+  const double size = std::max(std::fabs(t), max_component(abs(ray.origin))), by = reach * size;
   const auto largest_at = [&](const auto& p) { return max(value(tree_, p, member), largest_of_others(member, p)); };
   if (!(t - by > ray.t_min)) return false;
   if (!(largest_at(ray.at(t - by)) > 1 + rounding_of_sums)) return false;
   if (!(largest_at(ray.at(t + by)) > 1 + rounding_of_sums)) return false;
-  const Interval along{t - by, t + by};
   const Vec3d& o = ray.origin;
   const Vec3d& d = ray.direction;
-  return largest_at(Vec3<Interval>{Interval(o.x) + along * Interval(d.x), Interval(o.y) + along * Interval(d.y),
-                                   Interval(o.z) + along * Interval(d.z)})
-             .lo > 1 - sums_are_off;
+  const auto enclosure = [&](const Interval& along) {
+    return largest_at(Vec3<Interval>{Interval(o.x) + along * Interval(d.x), Interval(o.y) + along * Interval(d.y),
+                                     Interval(o.z) + along * Interval(d.z)});
+  };
+  const Interval here = enclosure(Interval(t));
+  const double least = 1 - sums_are_off - 2 * (here.hi - here.lo), shortest = 4 * rounding::ulp * size;
+  double from = t - by, step = 2 * by;
+  while (from < t + by) {
+    const double to = std::min(from + step, t + by);
+    if (enclosure({from, to}).lo > least) {
+      from = to;
+      step *= 2;
+    } else if (step > shortest) {
+      step *= 0.5;
+    } else {
+      return false;
+    }
+  }
+  return true;
 }
 
 // Of those that can be 1 at p, a point.
@@ -218,6 +233,12 @@ SurfacePoint TreeTracer::surface_at(std::size_t cell, const Vec3d& position, con
   for (const double likely : {1e-6, 1e-13})  // more than sums are off; no more than rounding
     for (const Vec3d& way : ways)
       if (const auto outside = outside_along(c, position, way, likely)) return {.normal = normal, .outside = *outside};
+  // At an edge of a face in whose plane the ray runs, all these ways may lie in it: aslant to all sides.
+  const Frame frame = Frame::around(normal);
+  for (const double x : {-1, 0, 1})
+    for (const double y : {-1, 0, 1})
+      if (const auto outside = outside_along(c, position, frame.to_world({x, y, 1}), 1e-13))
+        return {.normal = normal, .outside = *outside};
   return {.normal = normal, .outside = position};
 }
 

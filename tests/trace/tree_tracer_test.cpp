@@ -2,6 +2,7 @@
 #include "field/trace/tree_tracer.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -169,31 +170,83 @@ TEST(TreeTracer, DecidesRaysAcrossACut) {
   EXPECT_LT(hits, rays);
 }
 
-// Two boxes with a face in common, or a hair between them: from inside one leaves only where there is an outside.
+FieldNodeId add(FieldDescription& field, AnyNode node, std::vector<FieldNodeId> of = {}) {
+  return field.add(
+      {.what = GeneralNode{.node = boxed(std::move(node)), .of = std::move(of), .material = {}}, .where = {}});
+}
+
+TreeTracer tracer_of(const FieldDescription& field) {
+  const auto program = compile(field);
+  EXPECT_TRUE(program) << program.why()[0].message;
+  auto tracer = TreeTracer::make(program->trees()[0]);
+  EXPECT_TRUE(tracer) << tracer.why()[0].message;
+  return std::move(*tracer);
+}
+
+// Two boxes with a face in common, or a hair between them: from inside one leaves only where there is an outside. Far
+// from the origin places are rounded by more than sums are.
 TEST(TreeTracer, GoesThroughACommonFaceButNotAcrossAGap) {
   Random random(44);
-  for (const double gap : {0.0, 1e-16, 1e-6}) {
+  for (const double away : {0.0, 4.7e4})
+    for (const double gap : {0.0, 1e-16, 1e-6}) {
+      FieldDescription field;
+      const auto box = [&](double center, double size) {
+        return add(field, Box{.center = {away + center, 0, 0}, .size = {size, 2, 2}, .potential = {}});
+      };
+      field.root = field.add({.what = Union{{box(0, 2), box(1.75 + gap, 1.5)}}, .where = {}});
+      const TreeTracer tracer = tracer_of(field);
+      for (int i = 0; i < 60; ++i) {
+        const Vec3d from{away + 0.3, random.between(-0.9, 0.9), random.between(-0.9, 0.9)};
+        const Vec3d to{away + 2.4, random.between(-0.9, 0.9), random.between(-0.9, 0.9)};
+        const Ray ray{.origin = from, .direction = normalize(to - from)};
+        const CrossingSearch found = traced(tracer, ray);
+        ASSERT_TRUE(found.t) << "gap " << gap;
+        const double x = ray.at(*found.t).x - away;
+        if (gap > 1e-15) EXPECT_NEAR(x, 1, 1e-12 + 1e-14 * away);
+        else EXPECT_GT(x, 2.3) << "away " << away;
+      }
+    }
+}
+
+// However many sizes away a ray begins, what it meets is as thin as where it stands tells.
+TEST(TreeTracer, FindsThinBodiesFromFarAway) {
+  Random random(45);
+  for (const double radius : {1e-4, 1e-6, 1e-8}) {
     FieldDescription field;
-    const auto box = [&](double center, double size) {
-      const Box node{.center = {center, 0, 0}, .size = {size, 2, 2}, .potential = {}};
-      return field.add({.what = GeneralNode{.node = boxed(node), .of = {}, .material = {}}, .where = {}});
-    };
-    const FieldNodeId left = box(0, 2), right = box(1.75 + gap, 1.5);
-    field.root = field.add({.what = Union{{left, right}}, .where = {}});
-    const auto program = compile(field);
-    ASSERT_TRUE(program) << program.why()[0].message;
-    const auto tracer = TreeTracer::make(program->trees()[0]);
-    ASSERT_TRUE(tracer) << tracer.why()[0].message;
-    for (int i = 0; i < 60; ++i) {
-      const Vec3d from{0.3, random.between(-0.9, 0.9), random.between(-0.9, 0.9)};
-      const Vec3d to{2.4, random.between(-0.9, 0.9), random.between(-0.9, 0.9)};
-      const Ray ray{.origin = from, .direction = normalize(to - from)};
-      const CrossingSearch found = traced(*tracer, ray);
-      ASSERT_TRUE(found.t) << "gap " << gap;
-      if (gap > 1e-15) EXPECT_NEAR(ray.at(*found.t).x, 1, 1e-12);
-      else EXPECT_GT(ray.at(*found.t).x, 2.3);
+    field.root = add(field, Ricci{1}, {add(field, Sphere{.center = {}, .radius = radius, .potential = {}})});
+    const TreeTracer tracer = tracer_of(field);
+    for (int i = 0; i < 30; ++i) {
+      const UnitVec3 direction = normalize(random.vector(1));
+      const CrossingSearch found = traced(tracer, {.origin = direction * -1e5, .direction = direction});
+      ASSERT_TRUE(found.t) << "radius " << radius;
+      EXPECT_NEAR(*found.t, 1e5 - radius, 1e-9);
+      EXPECT_GT(found.undecided, 1e300);
     }
   }
+}
+
+// A ray in the plane of one cut meets another one at their edge: that plane is on the surface, and starts lie beside
+// it.
+TEST(TreeTracer, StartsBesideAPlaneThatTheRayRunsIn) {
+  FieldDescription field;
+  const FieldNodeId ball = add(field, Sphere{.center = {}, .radius = 0.9, .potential = {}});
+  const FieldNodeId corner = add(field, Box{.center = {0.5, 0.5, 0}, .size = {1, 1, 3}, .potential = {}});
+  field.root = add(field, Difference{}, {ball, corner});
+  const TreeTracer tracer = tracer_of(field);
+  Random random(46);
+  int hits = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Vec3d from{random.between(1, 3), 0, random.between(-1, 1)}, to{0, 0, random.between(-0.5, 0.5)};
+    const Ray ray{.origin = from, .direction = normalize(to - from)};
+    for (std::size_t cell = 0; cell < tracer.cell_count(); ++cell) {
+      CellLog log;
+      const auto hit = tracer.first_hit(cell, ray, false, log);
+      if (!hit) continue;
+      ++hits;
+      EXPECT_LT(value(tracer.tree(), tracer.surface_at(cell, ray.at(hit->t), ray.direction).outside), 1);
+    }
+  }
+  EXPECT_GT(hits, 20);
 }
 
 TEST(TreeTracer, SpawnedPointsLieOutside) {
