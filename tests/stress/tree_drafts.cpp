@@ -8,109 +8,21 @@
 #include <utility>
 
 #include "tests/field/varied_blend.h"
+#include "tests/stress/body_draft.h"
+#include "tests/stress/odd_tree_drafts.h"
 #include "tests/trace/random_scene.h"
-#include "tests/tree/random_tree.h"
 
 namespace marrow::test {
 namespace {
 
-using Records = std::vector<std::uint32_t>;
-
-bool maybe(Random& random, double share = 0.5) { return random.between(0, 1) < share; }
-double sign(Random& random) { return maybe(random) ? 1 : -1; }
-
-// None, a rounding, or up to a tenth, to either side.
-double gap(Random& random) { return maybe(random, 0.3) ? 0 : sign(random) * pow(10, random.between(-14, -1)); }
-
-Potential potential(Random& random, double range) {
-  switch (random.whole(0, 3)) {
-    case 0:
-      return PolynomialProfile{range, random.whole(2, 6)};
-    case 1:
-      return SoftObjectProfile{range};
-    case 2:
-      return MetaballProfile{range};
-    default:
-      return WyvillProfile{range};
-  }
-}
-Potential potential(Random& random) { return potential(random, pow(10, random.between(-1.5, 0.3))); }
-
-// What a kind of scene draws: bodies that stand beside each other.
-class Draft {
- public:
-  explicit Draft(Random& random) : random_(random), trees_(random) {}
-
-  std::uint32_t leaf(TreeNode node) { return trees_.leaf(std::move(node)); }
-  std::uint32_t of(TreeNode node, const Records& children) { return trees_.record(std::move(node), children); }
-  std::uint32_t any(int levels) { return trees_.add(levels); }
-  /// One of these kinds of operators, drawn by its own keys.
-  template <class... Kinds>
-  std::uint32_t one_of(const Records& children) {
-    int chosen = random_.whole(0, sizeof...(Kinds) - 1);
-    std::uint32_t made = 0;
-    ((chosen-- == 0 ? void(made = of(random_node<Kinds>(children.size(), random_), children)) : void()), ...);
-    return made;
-  }
-  std::uint32_t combined(const Records& children) {
-    return one_of<Intersection, Difference, SoftUnion, SoftIntersection, SoftDifference, SharpUnion, SharpIntersection,
-                  SharpDifference, CrispUnion, Sum, Ricci, Contact, WeightedBlend, RestrictedBlend>(children);
-  }
-  std::uint32_t blended(const Records& children) {
-    return one_of<Sum, Ricci, SoftUnion, SharpUnion, CrispUnion, Contact, WeightedBlend, RestrictedBlend>(children);
-  }
-  std::uint32_t placed(const Affine& place, std::uint32_t child) {
-    return of(AffineWarp{place, place.inverse()}, {child});
-  }
-
-  Records bodies;
-  std::vector<Vec3d> places;
-  double focus_size = 0.1;
-
-  TreeDraft finished(const Affine& place) {
-    const std::uint32_t root = placed_bodies(place);
-    // What has no end is cut.
-    if (const Box3 box = surface_bounds(trees_.tree()); !(is_finite(box.lower) && is_finite(box.upper))) {
-      const std::uint32_t end = leaf(Sphere{.center = {}, .radius = 2.5, .potential = {}});
-      of(Intersection{}, {root, placed(place, end)});
-    }
-    TreeDraft draft{trees_.tree(), std::move(places), focus_size};
-    for (Vec3d& p : draft.places) p = place.point(p);
-    return draft;
-  }
-
- private:
-  // Each by itself or all together, as one node or as members of a union.
-  std::uint32_t placed_bodies(const Affine& place) {
-    if (place == Affine{}) return bodies.size() == 1 ? bodies[0] : of(CrispUnion{}, bodies);
-    if (bodies.size() == 1 || maybe(random_))
-      return placed(place, bodies.size() == 1 ? bodies[0] : of(CrispUnion{}, bodies));
-    for (std::uint32_t& b : bodies) b = placed(place, b);
-    return of(CrispUnion{}, bodies);
-  }
-
-  Random& random_;
-  RandomTree trees_;
-};
-
-void any_nodes(Draft& d, Random& random) {
+void any_nodes(BodyDraft& d, Random& random) {
   d.bodies = {d.any(random.whole(1, 3))};
   d.places = {random.vector(1), {}};
   d.focus_size = 0.5;
 }
 
-std::uint32_t box(Draft& d, Random& random, const Vec3d& center, const Vec3d& size) {
-  return d.leaf(Box{.center = center, .size = size, .rounding = 0, .potential = potential(random)});
-}
-std::uint32_t ball(Draft& d, Random& random, const Vec3d& center, double radius) {
-  return d.leaf(Sphere{.center = center, .radius = radius, .potential = potential(random)});
-}
-std::uint32_t tube(Draft& d, Random& random, const Vec3d& from, const Vec3d& to, double radius) {
-  return d.leaf(Cylinder{.from = from, .to = to, .radius = radius, .potential = potential(random)});
-}
-
 // Two bodies along the axes whose faces, edges or tangent planes meet, but for a gap.
-Records touching(Draft& d, Random& random) {
+Records touching(BodyDraft& d, Random& random) {
   const double g = gap(random);
   switch (random.whole(0, 7)) {
     case 0:  // face on face, and two faces each in one plane
@@ -148,7 +60,7 @@ Records touching(Draft& d, Random& random) {
   }
 }
 
-void creases(Draft& d, Random& random) {
+void creases(BodyDraft& d, Random& random) {
   const Records pair = touching(d, random);
   std::uint32_t one = d.combined(pair);
   if (maybe(random)) one = d.combined({one, d.any(0)});
@@ -156,7 +68,7 @@ void creases(Draft& d, Random& random) {
   else d.bodies = {one};
 }
 
-std::uint32_t some_body(Draft& d, Random& random) {
+std::uint32_t some_body(BodyDraft& d, Random& random) {
   switch (random.whole(0, 4)) {
     case 0:
       return box(d, random, random.vector(0.3), {0.6, 2, 0.6});
@@ -174,7 +86,7 @@ std::uint32_t some_body(Draft& d, Random& random) {
 }
 
 // Cuts of bends, tips of tapers, many turns of twists, one in another.
-std::uint32_t warped(Draft& d, Random& random, std::uint32_t child) {
+std::uint32_t warped(BodyDraft& d, Random& random, std::uint32_t child) {
   switch (random.whole(0, 4)) {
     case 0: {
       const double length = random.between(0.5, 3), angle = random.between(0.5, 2 * std::numbers::pi);
@@ -196,7 +108,7 @@ std::uint32_t warped(Draft& d, Random& random, std::uint32_t child) {
   }
 }
 
-void warps(Draft& d, Random& random) {
+void warps(BodyDraft& d, Random& random) {
   std::uint32_t one = some_body(d, random);
   if (maybe(random, 0.3)) one = d.combined({one, some_body(d, random)});
   d.places = {{}};
@@ -206,7 +118,7 @@ void warps(Draft& d, Random& random) {
 }
 
 // Bodies of about a ten-thousandth of the scene.
-std::uint32_t thread(Draft& d, Random& random, const Vec3d& at, const Vec3d& to) {
+std::uint32_t thread(BodyDraft& d, Random& random, const Vec3d& at, const Vec3d& to) {
   const double r = pow(10, random.between(-4.3, -3)), range = r * pow(10, random.between(-1, 3));
   const Potential p = potential(random, range);
   d.focus_size = 4 * r;
@@ -229,7 +141,7 @@ std::uint32_t thread(Draft& d, Random& random, const Vec3d& at, const Vec3d& to)
 }
 
 // In a body, beside it, through it.
-void threads(Draft& d, Random& random) {
+void threads(BodyDraft& d, Random& random) {
   const Vec3d at = random_direction(random) * random.between(0.4, 0.9), to = at + random.vector(1);
   const std::uint32_t thin = thread(d, random, at, to);
   const std::uint32_t body = maybe(random) ? ball(d, random, {}, 0.6) : box(d, random, {}, {1, 1, 1});
@@ -247,7 +159,7 @@ void threads(Draft& d, Random& random) {
 }
 
 // Balls and tubes whose supports meet in a point, or whose surfaces meet supports, but for a gap.
-void supports(Draft& d, Random& random) {
+void supports(BodyDraft& d, Random& random) {
   Records of;
   double edge = 0;
   for (int i = random.whole(2, 4); i > 0; --i) {
@@ -267,7 +179,7 @@ void supports(Draft& d, Random& random) {
   d.bodies = {d.blended(of)};
 }
 
-std::uint32_t varied_leaf(Draft& d, Random& random) {
+std::uint32_t varied_leaf(BodyDraft& d, Random& random) {
   BlendField blend = varied_blend(random, random.whole(0, 109));
   if (maybe(random, 0.3)) blend.distance_segments = {};
   // Integrals of the compact kernel along arcs take 0.1 ms each, and a ray thousands of them.
@@ -279,14 +191,14 @@ std::uint32_t varied_leaf(Draft& d, Random& random) {
   return d.leaf(BlendLeaf{std::make_shared<const BlendField>(std::move(blend))});
 }
 
-void kernels(Draft& d, Random& random) {
+void kernels(BodyDraft& d, Random& random) {
   const std::uint32_t one = varied_leaf(d, random);
   d.focus_size = 0.3;
   d.bodies = {maybe(random, 0.7) ? one
                                  : d.combined({one, maybe(random) ? varied_leaf(d, random) : some_body(d, random)})};
 }
 
-void convolutions(Draft& d, Random& random) {
+void convolutions(BodyDraft& d, Random& random) {
   std::vector<Vec3d> line{random.vector(1)};
   for (int i = random.whole(2, 5); i > 0; --i) line.push_back(random.vector(1));
   d.places = line;
@@ -304,7 +216,7 @@ void convolutions(Draft& d, Random& random) {
 }
 
 // More members than are divided, near each other.
-void crowd(Draft& d, Random& random) {
+void crowd(BodyDraft& d, Random& random) {
   for (int i = random.whole(65, 80); i > 0; --i) {
     if (maybe(random, 0.1)) {
       d.bodies.push_back(d.combined({d.any(0), d.any(0)}));
@@ -316,15 +228,16 @@ void crowd(Draft& d, Random& random) {
   }
 }
 
-using Draw = void (*)(Draft&, Random&);
-constexpr std::array<Draw, tree_kind_names.size()> draws{any_nodes, creases, warps,        threads,
-                                                         supports,  kernels, convolutions, crowd};
+using Draw = void (*)(BodyDraft&, Random&);
+constexpr std::array<Draw, usual_tree_kinds> draws{any_nodes, creases, warps,        threads,
+                                                   supports,  kernels, convolutions, crowd};
 
 }  // namespace
 
 TreeDraft draft_tree(std::size_t kind, const Affine& place, Random& random) {
-  Draft draft(random);
-  draws[kind](draft, random);
+  BodyDraft draft(random);
+  if (kind < usual_tree_kinds) draws[kind](draft, random);
+  else draw_odd_bodies(kind - usual_tree_kinds, draft, random);
   return draft.finished(place);
 }
 

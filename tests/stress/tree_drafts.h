@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "field/math/affine.h"
@@ -11,10 +12,14 @@
 
 namespace marrow::test {
 
-inline constexpr std::array tree_kind_names{"any nodes", "creases", "warps",        "threads",
-                                            "supports",  "kernels", "convolutions", "crowd"};
+inline constexpr std::array tree_kind_names{"any nodes",    "creases", "warps",      "threads", "supports", "kernels",
+                                            "convolutions", "crowd",   "coincident", "cusps",   "squeezed", "pressed",
+                                            "powers",       "sheets",  "odd blends", "planes",  "shells",   "joined"};
+/// Of them, those after the first so many are odd, as nobody would model them: in scenes from this number on.
+inline constexpr std::size_t usual_tree_kinds = 8, odd_tree_kinds = tree_kind_names.size() - usual_tree_kinds;
+inline constexpr std::uint64_t first_odd_tree = 2'000'000'000;
 
-inline constexpr std::size_t kernels_kind = 5;
+inline constexpr std::size_t kernels_kind = 5, cusps_kind = 9;
 
 /// A tree, and where it is hardest; within some units of the origin before it is placed by `place`.
 struct TreeDraft {

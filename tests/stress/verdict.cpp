@@ -30,13 +30,20 @@ void merge(std::vector<std::string>& into, const std::vector<std::string>& more)
 // The part of a ray near the cells: there is nothing elsewhere, as tests of the cells hold.
 Ray near_cells(const StressScene& scene, Ray ray) {
   const double size = length(scene.cells().size()), middle = dot(scene.cells().center() - ray.origin, ray.direction);
-  ray.t_min = std::max(0.0, middle - size);
-  ray.t_max = middle + size;
+  ray.t_min = std::max(ray.t_min, middle - size);
+  ray.t_max = std::min(ray.t_max, middle + size);
   return ray;
 }
 
 // Nearer to a skeleton than this no surface is but at the point of a cone: only its place can be judged there.
 double point_size(const StressScene& scene) { return 1e-5 * scene.size(); }
+
+// Whether what is met at t is the very point of a cone, where the field is infinite, and nothing behind it.
+bool is_bare_point(const StressScene& scene, const Ray& ray, double t) {
+  const double size = point_size(scene);
+  return scene.oracle().skeleton_distance(ray.at(t)) < size &&
+         scene.oracle().largest_excess(ray, t + size, t + 2 * size) < scene.grazing_excess();
+}
 
 // Sums in float are known to this, whatever the tracer does.
 constexpr double field_rounding = 5e-7;
@@ -228,6 +235,7 @@ void Parity::add(const Parity& b) {
   odd += b.odd;
   odd_lost += b.odd_lost;
   odd_grazing += b.odd_grazing;
+  points += b.points;
   merge(odd_rays, b.odd_rays);
   merge(lost_rays, b.lost_rays);
 }
@@ -241,6 +249,10 @@ void count_crossings(const StressScene& scene, const Ray& line, Random& random, 
   ++p.lines;
   // `ray` met surface at t; the record is that of the ray that met nothing the other way.
   const auto one_way_only = [&](const Ray& ray, double t, const RayRecord& empty_handed) {
+    if (is_bare_point(scene, ray, t)) {
+      ++p.points;
+      return;
+    }
     const double depth = depth_after(scene, ray, t);
     if (depth < scene.grazing_excess()) {
       ++p.odd_grazing;

@@ -74,6 +74,8 @@ struct Parity {
   std::uint64_t odd_lost = 0;
   /// One way found surface that is at most StressScene::grazing_excess() deep.
   std::uint64_t odd_grazing = 0;
+  /// One way found nothing but the point of a cone of radius 0.
+  std::uint64_t points = 0;
   std::vector<std::string> odd_rays, lost_rays;
 
   void add(const Parity&);
