@@ -152,12 +152,17 @@ bool TreeTracer::is_covered(std::uint32_t member, const Ray& ray, double t) cons
 // Whether the ray goes on from the member into another one, or the other way, through a common face: members are above
 // 1 before and behind, and bounds prove that between no more is outside than what sums and positions are off.
 bool TreeTracer::is_joint(std::uint32_t member, const Ray& ray, double t) const {
-  constexpr double reach = 1e-11, rounding_of_sums = 1e-13, sums_are_off = 1e-10;
-  const double size = std::max(std::fabs(t), max_component(abs(ray.origin))), by = reach * size;
+  constexpr double least_reach = 1e-11, most_reach = 1e-8, rounding_of_sums = 1e-13, sums_are_off = 1e-10;
+  const double size = std::max(std::fabs(t), max_component(abs(ray.origin)));
   const auto largest_at = [&](const auto& p) { return max(value(tree_, p, member), largest_of_others(member, p)); };
-  if (!(t - by > ray.t_min)) return false;
-  if (!(largest_at(ray.at(t - by)) > 1 + rounding_of_sums)) return false;
-  if (!(largest_at(ray.at(t + by)) > 1 + rounding_of_sums)) return false;
+  // Where fields are flat sums tell the side only farther away.
+  double by = least_reach * size;
+  for (;; by *= 10) {
+    if (by > most_reach * size || !(t - by > ray.t_min)) return false;
+    const double off = std::min(largest_at(ray.at(t - by)), largest_at(ray.at(t + by))) - 1;
+    if (off < 0) return false;
+    if (off > rounding_of_sums) break;
+  }
   const Vec3d& o = ray.origin;
   const Vec3d& d = ray.direction;
   const auto enclosure = [&](const Interval& along) {

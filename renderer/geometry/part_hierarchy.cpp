@@ -53,12 +53,13 @@ void ask(const RTCIntersectFunctionNArguments* a, const PartsOfSolid& of, const 
   if (log.begins_inside) t_far = done;
 }
 
-// Behind what is found by now nothing more need be found.
+// Behind what is found by now nothing more need be found: as floats come into boxes, or a nearer part would be lost
+// that they come into too late.
 void note(const RTCIntersectFunctionNArguments* a, const SolidPart& part, StreamedRay& ray, float& t_far) {
   const PartVisit::Stretch inside = ray.visit.in(part.box);
   if (inside.empty()) return;
   ray.ahead.add({.enter = inside.enter, .solid = a->geomID, .part = a->primID});
-  if (ray.ahead.full()) t_far = std::min(t_far, embree_t(ray.visit, ray.ahead.end()));
+  if (ray.ahead.full()) t_far = std::min(t_far, embree_t(ray.visit, ray.ahead.end() + ray.late));
 }
 
 void intersect_callback(const RTCIntersectFunctionNArguments* a) {
@@ -98,11 +99,20 @@ bool start(const Box3& bounds, PartVisit& visit, RTCRayN* rays, unsigned count, 
   return true;
 }
 
+// The margin of boxes as a way along the ray: before a place that is within a box, floats are in its padded one.
+double margin_along(const UnitVec3& direction, double margin) {
+  double least = 1;
+  for (const double d : {direction.x(), direction.y(), direction.z()})
+    if (d != 0) least = std::min(least, std::fabs(d));
+  return margin / least;
+}
+
 // The same of a ray that may have been through some parts. The float search of boxes must not lose those that it comes
 // into at the same place.
-bool start(const Box3& bounds, StreamedRay& streamed, RTCRayN* rays, unsigned count, unsigned lane) {
+bool start(const Box3& bounds, double margin, StreamedRay& streamed, RTCRayN* rays, unsigned count, unsigned lane) {
   PartVisit& visit = streamed.visit;
   if (!start(bounds, visit, rays, count, lane)) return false;
+  streamed.late = margin_along(visit.ray.direction, margin);
   const double gone = (streamed.ahead.beginning() - visit.t_start) * (1 - 1e-6);
   if (gone > 0) RTCRayN_tnear(rays, count, lane) = static_cast<float>(gone);
   return true;
@@ -139,6 +149,7 @@ Result<std::unique_ptr<PartHierarchy>> PartHierarchy::make(RTCDeviceTy* device, 
   for (const PartsOfSolid& s : h->solids_)
     for (const SolidPart& p : s.parts) bounds.include(p.box);
   const double margin = bounds.empty() ? 0 : std::ldexp(8 * largest_coordinate(bounds), -24);
+  h->margin_ = margin;
   h->padded_bounds_ = bounds.padded(margin);
   for (PartsOfSolid& s : h->solids_) {
     for (SolidPart& p : s.parts) p.box = p.box.padded(margin);
@@ -183,7 +194,7 @@ void PartHierarchy::find_parts(std::span<StreamedRay* const> rays) const {
       RTCRayHit rayhit{};
       auto* ray = reinterpret_cast<RTCRayN*>(&rayhit.ray);
       rayhit.hit.geomID = rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-      if (!start(padded_bounds_, *rays[i], ray, 1, 0)) continue;
+      if (!start(padded_bounds_, margin_, *rays[i], ray, 1, 0)) continue;
       RTCRayN_id(ray, 1, 0) = i;
       rtcIntersect1(scene_.get(), &q, &rayhit);
     }
@@ -200,7 +211,8 @@ void PartHierarchy::find_parts(std::span<StreamedRay* const> rays) const {
   std::fill_n(rayhits.hit.geomID, most_together, RTC_INVALID_GEOMETRY_ID);
   std::fill_n(rayhits.hit.instID[0], most_together, RTC_INVALID_GEOMETRY_ID);
   for (unsigned i = 0; i < rays.size(); ++i)
-    if (start(padded_bounds_, *rays[i], reinterpret_cast<RTCRayN*>(&rayhits.ray), most_together, i)) valid[i] = -1;
+    if (start(padded_bounds_, margin_, *rays[i], reinterpret_cast<RTCRayN*>(&rayhits.ray), most_together, i))
+      valid[i] = -1;
   rtcIntersect16(valid.data(), scene_.get(), &q, &rayhits);
 }
 

@@ -51,6 +51,7 @@ class PartHierarchy {
   std::vector<std::uint32_t> first_part_;  // the number of each solid's first part, and that of all
   bool traces_packets_ = false;
   Box3 padded_bounds_;  // what rays are clipped to
+  double margin_ = 0;   // that boxes are padded by
   EmbreeScene scene_;
 };
 
