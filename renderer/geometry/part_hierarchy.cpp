@@ -81,6 +81,13 @@ void occluded_callback(const RTCOccludedFunctionNArguments* a) {
   if (of.solid->hit_in_part(part, visit.ray, true, log)) RTCRayN_tfar(a->ray, a->N, 0) = done;
 }
 
+// For Embree, which takes the inverse of what is smaller for that of +1e-18, also where it is negative: a packet with
+// such a ray among others that go down along the axis would lose them all.
+float embree_direction(double component) {
+  constexpr double smallest = 1.01e-18;
+  return std::fabs(component) < smallest ? 0.0F : static_cast<float>(component);
+}
+
 // Makes the ray ready for Embree, as the given one of `count`; false when it misses all boxes.
 bool start(const Box3& bounds, PartVisit& visit, RTCRayN* rays, unsigned count, unsigned lane) {
   const PartVisit::Stretch inside = visit.in(bounds);
@@ -90,9 +97,9 @@ bool start(const Box3& bounds, PartVisit& visit, RTCRayN* rays, unsigned count, 
   RTCRayN_org_x(rays, count, lane) = static_cast<float>(origin.x);
   RTCRayN_org_y(rays, count, lane) = static_cast<float>(origin.y);
   RTCRayN_org_z(rays, count, lane) = static_cast<float>(origin.z);
-  RTCRayN_dir_x(rays, count, lane) = static_cast<float>(visit.ray.direction.x());
-  RTCRayN_dir_y(rays, count, lane) = static_cast<float>(visit.ray.direction.y());
-  RTCRayN_dir_z(rays, count, lane) = static_cast<float>(visit.ray.direction.z());
+  RTCRayN_dir_x(rays, count, lane) = embree_direction(visit.ray.direction.x());
+  RTCRayN_dir_y(rays, count, lane) = embree_direction(visit.ray.direction.y());
+  RTCRayN_dir_z(rays, count, lane) = embree_direction(visit.ray.direction.z());
   RTCRayN_tfar(rays, count, lane) = embree_t(visit, inside.exit);
   RTCRayN_mask(rays, count, lane) = ~0U;
   RTCRayN_id(rays, count, lane) = lane;
