@@ -156,7 +156,76 @@ Ray on_surface(Random& random, const StressScene& s) {
   return {p, normalize(tangential ? flat : direction)};
 }
 
+double power_of_ten(Random& random, double least, double most) { return pow(10, random.between(least, most)); }
+
+// From or to a place at, before or behind its first hit.
+Ray cut_at_hit(Random& random, const StressScene& s, Ray ray) {
+  const auto hit = s.surfaces().first_hit(ray);
+  if (!hit) return ray;
+  const double behind = hit->t + s.size() * power_of_ten(random, -12, -0.3);
+  switch (random.whole(0, 7)) {
+    case 0:
+      ray.t_min = ray.t_max = hit->t;
+      break;
+    case 1:
+      ray.t_max = hit->t;
+      break;
+    case 2:
+      ray.t_max = std::nextafter(hit->t, 0);
+      break;
+    case 3:
+      ray.t_min = hit->t;
+      break;
+    case 4:
+      ray.t_min = behind;
+      break;
+    case 5:
+      ray.t_min = behind;
+      ray.t_max = behind + s.size() * power_of_ten(random, -9, 0);
+      break;
+    case 6:
+      ray.t_min = ray.t_max = behind;
+      break;
+    default:
+      return {ray.at(behind), UnitVec3::unchecked(random_direction(random))};
+  }
+  return ray;
+}
+
+// In nearly the same direction; all but along the axis that it goes along most, now and then.
+Ray neighbour(Random& random, Ray ray) {
+  constexpr double almost_none[] = {0, -0.0, 1e-17, -1e-17, 1e-18, -9e-19, 1e-30, -1e-30, -1e-320};
+  if (random.between(0, 1) < 0.8) {
+    ray.direction = normalize(ray.direction.vec() + random.vector(power_of_ten(random, -9, -2)));
+    return ray;
+  }
+  Vec3d d = ray.direction.vec();
+  for (std::size_t k = 0; k < 3; ++k)
+    d[k] = std::fabs(d[k]) == max_component(abs(ray.direction.vec())) ? std::copysign(1, d[k])
+                                                                      : almost_none[random.whole(0, 8)];
+  ray.direction = UnitVec3::unchecked(d);
+  return ray;
+}
+
 }  // namespace
+
+std::vector<Ray> company_of(Random& random, const StressScene& s) {
+  const auto count = static_cast<std::size_t>(random.whole(3, 200));
+  std::vector<Ray> rays;
+  while (rays.size() < count) {
+    const double kind = random.between(0, 1);
+    if (kind < 0.1 && !rays.empty()) {
+      rays.push_back(rays[static_cast<std::size_t>(random.whole(0, static_cast<int>(rays.size()) - 1))]);
+      continue;
+    }
+    Ray ray = ray_of(static_cast<Family>(random.whole(0, static_cast<int>(family_count) - 1)), random, s);
+    if (kind > 0.6) ray = cut_at_hit(random, s, ray);
+    rays.push_back(ray);
+    if (kind > 0.5)
+      for (int i = random.whole(1, 20); i > 0; --i) rays.push_back(neighbour(random, ray));
+  }
+  return rays;
+}
 
 Ray ray_of(Family family, Random& random, const StressScene& scene) {
   switch (family) {

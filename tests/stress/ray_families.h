@@ -20,4 +20,8 @@ inline constexpr std::size_t line_family_count = family_count - 2;
 /// give a chord.
 Ray ray_of(Family, Random&, const StressScene&);
 
+/// Rays to be asked side by side: of all families, some of them twice or with neighbours that differ by as little as
+/// 1e-9 or are all but along an axis, some that begin in a body, at a hit or behind it, or end there.
+std::vector<Ray> company_of(Random&, const StressScene&);
+
 }  // namespace marrow::test

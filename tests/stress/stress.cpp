@@ -41,7 +41,7 @@ std::uint64_t scene_number(const Job& job, std::uint64_t i) {
 Outcome run_scene(const Job& job, std::uint64_t number) {
   Outcome out;
   const StressScene scene(number);
-  Random random = Random::stream(number);
+  Random random = Random::stream(number), company = Random::stream(~number);
   // A sample of a varying angle takes ten times as long, and the oracle's of many skeletons too.
   const std::uint64_t share = scene.has_varied_angle() || scene.is_odd() ? 10 : 1;
   const std::uint64_t rays = job.rays / job.scenes / share, lines = job.lines / job.scenes / share;
@@ -50,6 +50,7 @@ Outcome run_scene(const Job& job, std::uint64_t number) {
     const std::size_t f = i % family_count;
     judge(scene, ray_of(static_cast<Family>(f), random, scene), family_names[f], f < line_family_count,
           out.families[f]);
+    if (i % 400 == 399 || i + 1 == rays) judge_company(scene, company_of(company, scene), out.families[f]);
   }
   for (const Verdict& v : out.families) out.kinds[scene.kind()].add(v);
   for (std::uint64_t i = 0; i < lines; ++i) {
@@ -105,6 +106,7 @@ bool judged(const Outcome& all) {
   }
   print("all", lines);
   const auto share = [](std::uint64_t a, std::uint64_t b) { return b == 0 ? 0 : 100 * double(a) / double(b); };
+  fmt::print("{} rays in company\n", total.in_company);
   fmt::print(
       "hits are off the exact surface by at most {:.3g} of the distance to the skeleton\n"
       "t within 4 ulp of float: {:.4f} % of {} hits at no grazing angle, {:.3g} ulp at most; {} of the {} where "

@@ -184,6 +184,7 @@ void Verdict::add(const Verdict& b) {
   wrong_side += b.wrong_side;
   limits += b.limits;
   unlike += b.unlike;
+  in_company += b.in_company;
   points += b.points;
   measured += b.measured;
   within_4_ulp += b.within_4_ulp;
@@ -226,6 +227,26 @@ void judge(const StressScene& scene, const Ray& ray, const char* family, bool fr
   const double end = hit->t - 1e-4 * scene.oracle().skeleton_distance(ray.at(hit->t));
   if (leaves_from_inside(scene, ray, exact)) judge_way_inside(scene, ray, end, record.certified, family, v);
   else judge_free_way(scene, ray, end, &*hit, record.certified, family, v);
+}
+
+void judge_company(const StressScene& scene, std::span<const Ray> rays, Verdict& v) {
+  std::vector<std::optional<SurfaceHit>> hits(rays.size()), recorded(rays.size());
+  std::vector<RayRecord> records(rays.size());
+  std::vector<std::uint8_t> hidden(rays.size());
+  scene.surfaces().first_hits(rays, hits);
+  scene.surfaces().first_hits(rays, recorded, records);
+  scene.surfaces().occluded(rays, hidden);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    RayRecord record;
+    const auto alone = scene.surfaces().first_hit(rays[i], record);
+    const bool is_like = same(alone, hits[i]) && same(alone, recorded[i]) &&
+                         record.evaluations == records[i].evaluations && record.certified == records[i].certified &&
+                         scene.surfaces().occluded(rays[i]) == (hidden[i] != 0);
+    ++v.in_company;
+    if (is_like) continue;
+    ++v.unlike;
+    note(v.limit_rays, text(scene, rays[i], "any", "another answer in company at", alone ? alone->t : 0));
+  }
 }
 
 void Parity::add(const Parity& b) {

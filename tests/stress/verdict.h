@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,9 @@ struct Verdict {
   /// A hit that is not the same, or not gone, when the ray ends at it, or just before it; or occluded() differs from
   /// first_hit() for rays that end 4 ulp of float behind it, or before it.
   std::uint64_t limits = 0;
-  /// The answer is another one without a record: of parts of elements instead of elements.
+  /// The answer is another one without a record, or in company.
   std::uint64_t unlike = 0;
+  std::uint64_t in_company = 0;  ///< rays that were asked side by side; not among `rays`
   /// A hit off the surface by more than allowed_displacement, where the field is so flat that it is nearly 1 all the
   /// same.
   std::uint64_t displaced = 0;
@@ -62,6 +64,10 @@ inline constexpr double allowed_displacement = 2e-5;
 /// to the skeleton.
 /// `from_afar`: the ray begins a camera's distance away, so that ulps of t mean something.
 void judge(const StressScene&, const Ray&, const char* family, bool from_afar, Verdict&);
+
+/// Rays that are asked side by side are to get what each gets alone, records and all; counted as rays that are not, if
+/// they do not.
+void judge_company(const StressScene&, std::span<const Ray>, Verdict&);
 
 /// A line through the scene, traced from both ends and, between the first and the last hit, both ways from places that
 /// the exact field says are outside.
