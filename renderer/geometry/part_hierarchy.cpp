@@ -120,7 +120,7 @@ bool start(const Box3& bounds, double margin, StreamedRay& streamed, RTCRayN* ra
   PartVisit& visit = streamed.visit;
   if (!start(bounds, visit, rays, count, lane)) return false;
   streamed.late = margin_along(visit.ray.direction, margin);
-  const double gone = (streamed.ahead.beginning() - visit.t_start) * (1 - 1e-6);
+  const double gone = (streamed.ahead.beginning() - visit.t_start) * (1 - 1e-6) - streamed.late;
   if (gone > 0) RTCRayN_tnear(rays, count, lane) = static_cast<float>(gone);
   return true;
 }
