@@ -91,9 +91,9 @@ std::string describe(const ocio::Config& config, const std::string& display, con
   return fmt::format("{} [{}] {} / {}", config.getName(), config.getCacheID(), display, view);
 }
 
-const std::vector<float>* float_channel(const Picture& picture, const std::string& name) {
-  for (const Channel& c : picture.channels)
-    if (c.name == name) return std::get_if<std::vector<float>>(&c.samples);
+const FloatRow* float_channel(const PictureRows& picture, const std::string& name) {
+  for (const ChannelRows& c : picture.channels)
+    if (c.name == name) return std::get_if<FloatRow>(&c.fill);
   return nullptr;
 }
 
@@ -130,14 +130,19 @@ void Display::apply(std::span<float> rgb) const {
   });
 }
 
-Result<RgbImage> Display::apply(const Picture& picture) const {
+Result<RgbImage> Display::apply(const PictureRows& picture) const {
   RgbImage image(picture.data.width(), picture.data.height());
+  const auto width = static_cast<std::size_t>(picture.data.width());
   const char* const names[] = {"R", "G", "B"};
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::vector<float>* channel = float_channel(picture, names[k]);
-    if (!channel || 3 * channel->size() != image.samples.size())
-      return failure(fmt::format("the picture has no channel {} to display", names[k]));
-    for (std::size_t i = 0; i < channel->size(); ++i) image.samples[3 * i + k] = (*channel)[i];
+    const FloatRow* channel = float_channel(picture, names[k]);
+    if (!channel) return failure(fmt::format("the picture has no channel {} to display", names[k]));
+    tbb::parallel_for(0, picture.data.height(), [&](int line) {
+      std::vector<float> row(width);
+      (*channel)(picture.data.y0 + line, row);
+      float* to = image.samples.data() + 3 * width * static_cast<std::size_t>(line) + k;
+      for (std::size_t i = 0; i < width; ++i) to[3 * i] = row[i];
+    });
   }
   apply(image.samples);
   return image;

@@ -30,7 +30,7 @@ class Display {
   void apply(std::span<float> rgb) const;
   /// Display-encoded R, G, B of the picture's data window: opaque, over the background as it was rendered.
   /// Error: the picture has no float channels R, G, B.
-  Result<RgbImage> apply(const Picture&) const;
+  Result<RgbImage> apply(const PictureRows&) const;
 
   /// Configuration, its cache id, display and view in one line, for metadata.
   const std::string& name() const { return name_; }

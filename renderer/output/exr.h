@@ -22,9 +22,11 @@ enum class ExrColor {
 ///   colorInteropID   lin_rec709_scene if there is a channel R, else data
 ///   chromaticities   those of lin_rec709_scene or lin_ap1_scene when colorInteropID is one of them
 /// The same picture gives the same bytes for any number of threads when SOURCE_DATE_EPOCH is set.
+Result<std::vector<std::byte>> encode_exr(const PictureRows&, ExrColor = ExrColor::Float);
 Result<std::vector<std::byte>> encode_exr(const Picture&, ExrColor = ExrColor::Float);
 
 /// encode_exr onto write_file_atomically: after an error the old file is as it was.
+Status write_exr(const std::filesystem::path&, const PictureRows&, ExrColor = ExrColor::Float);
 Status write_exr(const std::filesystem::path&, const Picture&, ExrColor = ExrColor::Float);
 
 /// Reads what write_exr wrote, and any other flat EXR: channels in the order of the file (by name), half widened to

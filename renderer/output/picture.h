@@ -2,10 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "field/base/result.h"
 
 namespace marrow {
 
@@ -31,5 +35,25 @@ struct Picture {
   std::vector<Channel> channels;
   std::vector<std::pair<std::string, Metadata>> metadata;
 };
+
+/// Fill the samples of the row y of the data window, for any threads at once.
+using FloatRow = std::function<void(int y, std::span<float>)>;
+using WholeRow = std::function<void(int y, std::span<std::uint32_t>)>;
+
+struct ChannelRows {
+  std::string name;
+  std::variant<FloatRow, WholeRow> fill;
+};
+
+/// A picture that is made row by row as it goes to a file, from what its functions refer to.
+struct PictureRows {
+  PixelWindow display;
+  PixelWindow data;
+  std::vector<ChannelRows> channels;
+  std::vector<std::pair<std::string, Metadata>> metadata;
+};
+
+/// A picture in memory as one that is made row by row; an error if a channel has too few samples or too many.
+Result<PictureRows> rows_of(const Picture&);
 
 }  // namespace marrow

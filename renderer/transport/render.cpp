@@ -179,12 +179,16 @@ Film render(const RenderScene& scene, const RenderSettings& settings, const Rend
   const DefaultFloatEnvironment defaults;
   const Job job{scene, settings, options};
   const PixelWindow display{0, 0, scene.width, scene.height};
-  Film film(display, clipped(display, options.crop));
-  Meter meter(options.progress, film.pixels().size() * static_cast<std::uint64_t>(job.samples));
-
+  const PixelWindow data = clipped(display, options.crop);
   const int threads = options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
   const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  tbb::task_arena(threads).execute([&] { render_passes(job, film, meter); });
+  Meter meter(options.progress, static_cast<std::uint64_t>(data.width()) * static_cast<std::uint64_t>(data.height()) *
+                                    static_cast<std::uint64_t>(job.samples));
+  Film film = tbb::task_arena(threads).execute([&] {
+    Film made(display, data);
+    render_passes(job, made, meter);
+    return made;
+  });
 
   film.elapsed_s = meter.elapsed();
   meter.finish();

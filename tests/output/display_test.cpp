@@ -149,11 +149,11 @@ TEST(Display, PictureAndItsColorsAgree) {
   const std::size_t n = 10000;
   Picture p{{0, 0, 100, 100}, {0, 0, 100, 100}, {}, {}};
   for (const char* name : {"B", "G", "R"}) p.channels.push_back({name, std::vector<float>(n, 0.25f)});
-  const auto image = open("Standard").apply(p);
+  const auto image = open("Standard").apply(*rows_of(p));
   ASSERT_TRUE(image);
   EXPECT_NEAR(image->pixel(99, 99)[2], srgb(0.25), 1e-5);
   p.channels.pop_back();
-  EXPECT_FALSE(open("Standard").apply(p));
+  EXPECT_FALSE(open("Standard").apply(*rows_of(p)));
 }
 
 }  // namespace

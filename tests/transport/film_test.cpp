@@ -35,7 +35,7 @@ TEST(Film, ReportsTheFirstPixelWithInvalidSamples) {
   film.at(5, 7).add({.radiance = Rgb(nan), .albedo = {}});
   film.at(3, 6).add({.radiance = Rgb(nan), .albedo = {}});
   film.at(3, 6).add({.radiance = Rgb(nan), .albedo = {}});
-  const InvalidSamples found = film.invalid_samples();
+  const InvalidSamples found = film.summary().invalid;
   EXPECT_EQ(found.count, 3u);
   EXPECT_EQ(found.x, 3);
   EXPECT_EQ(found.y, 6);

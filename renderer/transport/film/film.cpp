@@ -2,6 +2,11 @@
 #include "renderer/transport/film/film.h"
 
 #include <algorithm>
+#include <type_traits>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 namespace marrow {
 namespace {
@@ -40,26 +45,52 @@ Rgb PixelSums::variance_of_mean() const {
   return {std::max(spread.r, 0.0) * scale, std::max(spread.g, 0.0) * scale, std::max(spread.b, 0.0) * scale};
 }
 
-InvalidSamples Film::invalid_samples() const {
-  InvalidSamples found;
-  for (int y = data_.y0; y < data_.y1; ++y)
-    for (int x = data_.x0; x < data_.x1; ++x) {
-      const std::uint32_t here = at(x, y).invalid();
-      if (here > 0 && found.count == 0) found.x = x, found.y = y;
-      found.count += here;
-    }
+Film::Film(const PixelWindow& display, const PixelWindow& data)
+    : display_(display),
+      data_(data),
+      count_(static_cast<std::size_t>(data.width()) * static_cast<std::size_t>(data.height())),
+      pixels_(static_cast<PixelSums*>(::operator new(count_ * sizeof(PixelSums)))) {
+  static_assert(std::is_trivially_destructible_v<PixelSums>);  // so memory is all that there is to release
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count_, 4096), [&](const auto& part) {
+    std::uninitialized_value_construct(pixels_.get() + part.begin(), pixels_.get() + part.end());
+  });
+}
+
+namespace {
+
+FilmSummary summary_of_row(std::span<const PixelSums> row, const PixelWindow& data, int y) {
+  FilmSummary found{.invalid = {}, .fewest_samples = row.front().samples(), .most_samples = row.front().samples()};
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const PixelSums& p = row[i];
+    if (p.invalid() > 0 && found.invalid.count == 0)
+      found.invalid.x = data.x0 + static_cast<int>(i), found.invalid.y = y;
+    found.invalid.count += p.invalid();
+    found.uncertified_pixels += !p.centre.certified;
+    found.fewest_samples = std::min(found.fewest_samples, p.samples());
+    found.most_samples = std::max(found.most_samples, p.samples());
+  }
   return found;
 }
 
-std::uint64_t Film::uncertified_pixels() const {
-  return static_cast<std::uint64_t>(
-      std::ranges::count_if(pixels_, [](const PixelSums& p) { return !p.centre.certified; }));
+// The first comes first in reading order.
+FilmSummary joined(const FilmSummary& a, const FilmSummary& b) {
+  const InvalidSamples& first = a.invalid.count > 0 ? a.invalid : b.invalid;
+  return {.invalid = {a.invalid.count + b.invalid.count, first.x, first.y},
+          .uncertified_pixels = a.uncertified_pixels + b.uncertified_pixels,
+          .fewest_samples = std::min(a.fewest_samples, b.fewest_samples),
+          .most_samples = std::max(a.most_samples, b.most_samples)};
 }
 
-std::uint64_t Film::centre_evaluations() const {
-  std::uint64_t sum = 0;
-  for (const PixelSums& p : pixels_) sum += p.centre.evaluations;
-  return sum;
+}  // namespace
+
+FilmSummary Film::summary() const {
+  if (count_ == 0) return {};
+  const auto of_rows = [&](const tbb::blocked_range<int>& rows, FilmSummary so_far) {
+    for (int y = rows.begin(); y < rows.end(); ++y) so_far = joined(so_far, summary_of_row(row(y), data_, y));
+    return so_far;
+  };
+  const FilmSummary none{.invalid = {}, .fewest_samples = std::numeric_limits<std::uint32_t>::max()};
+  return tbb::parallel_reduce(tbb::blocked_range<int>(data_.y0, data_.y1), none, of_rows, joined);
 }
 
 }  // namespace marrow

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "materials/rgb.h"
 #include "renderer/output/picture.h"
@@ -62,12 +62,17 @@ struct InvalidSamples {
   int x = 0, y = 0;  ///< the first pixel in reading order that had one
 };
 
+/// What is to be said of a film as a whole.
+struct FilmSummary {
+  InvalidSamples invalid;
+  std::uint64_t uncertified_pixels = 0;  ///< their middle ray was not certified
+  std::uint32_t fewest_samples = 0, most_samples = 0;
+};
+
 class Film {
  public:
-  Film(const PixelWindow& display, const PixelWindow& data)
-      : display_(display),
-        data_(data),
-        pixels_(static_cast<std::size_t>(data.width()) * static_cast<std::size_t>(data.height())) {}
+  /// Takes its memory on all threads.
+  Film(const PixelWindow& display, const PixelWindow& data);
 
   const PixelWindow& display() const { return display_; }
   const PixelWindow& data() const { return data_; }
@@ -75,32 +80,38 @@ class Film {
   PixelSums& at(int x, int y) { return pixels_[index(x, y)]; }
   const PixelSums& at(int x, int y) const { return pixels_[index(x, y)]; }
   /// Row-major over data().
-  std::span<const PixelSums> pixels() const { return pixels_; }
+  std::span<const PixelSums> pixels() const { return {pixels_.get(), count_}; }
+  std::span<const PixelSums> row(int y) const {
+    return pixels().subspan(index(data_.x0, y), static_cast<std::size_t>(data_.width()));
+  }
 
-  InvalidSamples invalid_samples() const;
-  /// Pixels whose middle ray was not certified.
-  std::uint64_t uncertified_pixels() const;
-  /// Field evaluations of all middle rays.
-  std::uint64_t centre_evaluations() const;
+  FilmSummary summary() const;
 
   StopReason stopped_by = StopReason::Samples;
   double elapsed_s = 0;
 
  private:
+  struct Release {
+    void operator()(PixelSums* pixels) const { ::operator delete(pixels); }
+  };
+
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y - data_.y0) * static_cast<std::size_t>(data_.width()) +
            static_cast<std::size_t>(x - data_.x0);
   }
 
   PixelWindow display_, data_;
-  std::vector<PixelSums> pixels_;
+  std::size_t count_;
+  std::unique_ptr<PixelSums[], Release> pixels_;
 };
 
 /// Channels R G B A, Z, N.X N.Y N.Z, P.X P.Y P.Z, albedo.R/G/B, variance.R/G/B (of the mean) as float; object
 /// (id + 1, 0: none), samples, field.evals and field.certified (1: it is proved that the ray through the pixel's middle
 /// skipped no surface before its hit, or anywhere if it met none; 0: a gap stayed undecided) as unsigned. A is the
 /// share of samples that met a surface or a visible light; R G B also hold what is seen of the environment. No
-/// metadata.
+/// metadata. The rows are made from the film when they are asked for.
+PictureRows to_rows(const Film&);
+/// The same in memory.
 Picture to_picture(const Film&);
 
 }  // namespace marrow
