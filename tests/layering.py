@@ -44,6 +44,7 @@ LIBRARIES = {
     r"embree3/": ["renderer/geometry/", "renderer/bench/embree_engine.cpp"],
     r"(tbb|oneapi)/": ["field/trace/", "renderer/"],
     r"(OpenEXR|Imath)/|Imf|Imath|half\.h": ["renderer/output/read_exr.cpp", "renderer/output/write_exr.cpp"],
+    r"libdeflate": ["renderer/output/exr_zip.cpp"],
     r"OpenImageIO/": ["renderer/output/image_codecs.cpp"],
     r"OpenColorIO/": ["renderer/output/display.cpp"],
     r"cairo": ["renderer/slice/", "renderer/output/"],

@@ -21,14 +21,14 @@
 #include "field/base/overloaded.h"
 #include "renderer/output/atomic_file.h"
 #include "renderer/output/exr.h"
+#include "renderer/output/exr_zip.h"
 
 namespace marrow {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "samples go to the file as they are in memory");
 
-constexpr int part = 0;               // the only one
-constexpr int compression_level = 1;  // half the time of the default level, files 3 % larger
+constexpr int part = 0;  // the only one
 
 bool is_color(std::string_view name) {
   return name == "R" || name == "G" || name == "B" || name == "A" || name.starts_with("albedo.");
@@ -163,7 +163,6 @@ void write_header(exr_context_t file, const PictureRows& picture, const std::vec
   const exr_attr_v2f_t center{};
   require(exr_initialize_required_attr(file, part, &display, &data, 1, &center, 1, EXR_LINEORDER_INCREASING_Y,
                                        EXR_COMPRESSION_ZIP));
-  require(exr_set_zip_compression_level(file, part, compression_level));
   for (const WrittenChannel& c : channels)
     require(exr_add_channel(file, part, c.rows->name.c_str(), c.type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
   for (const auto& [name, value] : entries)
@@ -184,49 +183,22 @@ void write_header(exr_context_t file, const PictureRows& picture, const std::vec
 // Makes and compresses one chunk of rows after the other; each thread has its own.
 class ChunkEncoder {
  public:
-  ChunkEncoder(exr_context_t file, const std::vector<WrittenChannel>& channels, const PixelWindow& data)
-      : file_(file), channels_(channels), floats_(width(data)), whole_(width(data)), halves_(width(data)) {}
-  ~ChunkEncoder() {
-    pipeline_.packed_buffer = nullptr;  // it is not the pipeline's
-    exr_encoding_destroy(file_, &pipeline_);
-  }
-  ChunkEncoder(const ChunkEncoder&) = delete;
-  ChunkEncoder& operator=(const ChunkEncoder&) = delete;
+  ChunkEncoder(const std::vector<WrittenChannel>& channels, const PixelWindow& data)
+      : channels_(channels), data_(data), floats_(width(data)), whole_(width(data)), halves_(width(data)) {}
 
-  // The chunk whose first row is y, as it stands in the file.
-  std::vector<std::byte> encode(int y) {
-    enter(y);
-    pack();
-    // Not exr_encoding_run(): it packs under a lock, and wants to write one chunk after the other.
-    require(pipeline_.compress_fn(&pipeline_));
-    const auto* bytes = static_cast<const std::byte*>(pipeline_.compressed_buffer);
-    return {bytes, bytes + pipeline_.compressed_bytes};
+  // The chunk whose first row is y, as it stands in the file: row by row, and in a row channel by channel.
+  std::vector<std::byte> encode(int y, int rows) {
+    samples_.clear();
+    for (const int end = std::min(y + rows, data_.y1); y < end; ++y)
+      for (const WrittenChannel& channel : channels_) {
+        const std::span<const std::byte> row = row_of(channel, y);
+        samples_.insert(samples_.end(), row.begin(), row.end());
+      }
+    return zip_.compress(samples_);
   }
 
  private:
   static std::size_t width(const PixelWindow& data) { return static_cast<std::size_t>(data.width()); }
-
-  void enter(int y) {
-    exr_chunk_info_t chunk{};
-    require(exr_write_scanline_chunk_info(file_, part, y, &chunk));
-    if (pipeline_.context) return require(exr_encoding_update(file_, part, &chunk, &pipeline_));
-    require(exr_encoding_initialize(file_, part, &chunk, &pipeline_));
-    require(exr_encoding_choose_default_routines(file_, part, &pipeline_));
-  }
-
-  // Row by row, and in a row channel by channel.
-  void pack() {
-    packed_.resize(pipeline_.chunk.unpacked_size);
-    std::byte* to = packed_.data();
-    for (int y = pipeline_.chunk.start_y; y < pipeline_.chunk.start_y + pipeline_.chunk.height; ++y)
-      for (const WrittenChannel& channel : channels_) {
-        const std::span<const std::byte> row = row_of(channel, y);
-        std::memcpy(to, row.data(), row.size());
-        to += row.size();
-      }
-    pipeline_.packed_buffer = packed_.data();
-    pipeline_.packed_bytes = packed_.size();
-  }
 
   std::span<const std::byte> row_of(const WrittenChannel& channel, int y) {
     if (const auto* fill = std::get_if<WholeRow>(&channel.rows->fill)) {
@@ -241,35 +213,35 @@ class ChunkEncoder {
     return std::as_bytes(std::span(halves_));
   }
 
-  exr_context_t file_;
   const std::vector<WrittenChannel>& channels_;
+  PixelWindow data_;
   std::vector<float> floats_;
   std::vector<std::uint32_t> whole_;
   std::vector<Imath::half> halves_;
-  std::vector<std::byte> packed_;
-  exr_encode_pipeline_t pipeline_{};
+  std::vector<std::byte> samples_;
+  ExrZip zip_;
 };
 
 using Chunks = std::vector<std::vector<std::byte>>;
 
-Chunks encoded_chunks(exr_context_t file, const std::vector<WrittenChannel>& channels, const PixelWindow& data) {
-  std::int32_t count = 0, rows = 0;
-  require(exr_get_chunk_count(file, part, &count));
-  require(exr_get_scanlines_per_chunk(file, part, &rows));
+Chunks encoded_chunks(const std::vector<WrittenChannel>& channels, const PixelWindow& data, int rows) {
+  const int count = (data.height() + rows - 1) / rows;
   Chunks chunks(static_cast<std::size_t>(count));
-  tbb::enumerable_thread_specific<ChunkEncoder> encoders(file, channels, data);
-  tbb::parallel_for(0, count,
-                    [&](int i) { chunks[static_cast<std::size_t>(i)] = encoders.local().encode(data.y0 + i * rows); });
+  tbb::enumerable_thread_specific<ChunkEncoder> encoders(channels, data);
+  tbb::parallel_for(0, count, [&](int i) {
+    chunks[static_cast<std::size_t>(i)] = encoders.local().encode(data.y0 + i * rows, rows);
+  });
   return chunks;
 }
 
-void write_chunks(MemoryFile& file, const Chunks& chunks, int y0) {
+void write_pixels(MemoryFile& file, const std::vector<WrittenChannel>& channels, const PixelWindow& data) {
   std::int32_t rows = 0;
   require(exr_get_scanlines_per_chunk(file.context(), part, &rows));
+  const Chunks chunks = encoded_chunks(channels, data, rows);
   std::size_t size = 0;
-  for (const auto& chunk : chunks) size += chunk.size() + 2 * sizeof(std::int32_t);  // each has its row and its size
+  for (const auto& chunk : chunks) size += chunk.size() + 16;  // its row, its size, and where it is
   file.reserve(size);
-  for (int y = y0; const auto& chunk : chunks) {
+  for (int y = data.y0; const auto& chunk : chunks) {
     require(exr_write_scanline_chunk(file.context(), part, y, chunk.data(), chunk.size()));
     y += rows;
   }
@@ -286,7 +258,7 @@ Result<std::vector<std::byte>> encode_exr(const PictureRows& picture, ExrColor c
   try {
     MemoryFile file;
     write_header(file.context(), picture, *channels, *entries);
-    write_chunks(file, encoded_chunks(file.context(), *channels, picture.data), picture.data.y0);
+    write_pixels(file, *channels, picture.data);
     return file.finish();
   } catch (const std::exception& e) { return failure(std::string("cannot encode as EXR: ") + e.what()); }
 }
