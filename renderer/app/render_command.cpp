@@ -3,6 +3,8 @@
 #include <utility>
 #include <variant>
 
+#include <tbb/task_group.h>
+
 #include "renderer/app/commands.h"
 #include "renderer/app/environment.h"
 #include "renderer/app/files.h"
@@ -83,7 +85,7 @@ ExitCode run(const RenderCommand& command) {
   ProgressLine progress(command.progress);
   progress.phase("building");
   const RenderSettings settings = settings_over(command, scene->render);
-  const auto surfaces = build_surfaces(*scene, surface_options(command, settings));
+  auto surfaces = build_surfaces(*scene, surface_options(command, settings));
   progress.clear();
   if (!surfaces) return report(surfaces.why(), record.sources, exit_code_of_failed_build(surfaces.why()));
   const auto compiled = compile_transport(*scene, **surfaces, load_environment);
@@ -96,7 +98,12 @@ ExitCode run(const RenderCommand& command) {
                             .time_limit_s = command.time_limit_s,
                             .progress = [&](const Progress& p) { progress.show(p); },
                             .interrupted = &interruption_flag()});
-  return finish(film, *scene, settings, ready, command.strict, progress);
+  // All that is left needs the film alone, and the memory of surfaces takes long to give back
+  tbb::task_group meanwhile;
+  meanwhile.run([&] { surfaces->reset(); });
+  const ExitCode code = finish(film, *scene, settings, ready, command.strict, progress);
+  meanwhile.wait();
+  return code;
 }
 
 }  // namespace marrow
