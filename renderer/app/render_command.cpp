@@ -1,9 +1,11 @@
 // marrow render: scene text -> description -> surfaces and light -> film -> files.
 #include <algorithm>
+#include <memory>
+#include <optional>
 #include <utility>
 #include <variant>
 
-#include <tbb/task_group.h>
+#include <tbb/parallel_invoke.h>
 
 #include "renderer/app/commands.h"
 #include "renderer/app/environment.h"
@@ -85,7 +87,10 @@ ExitCode run(const RenderCommand& command) {
   ProgressLine progress(command.progress);
   progress.phase("building");
   const RenderSettings settings = settings_over(command, scene->render);
-  auto surfaces = build_surfaces(*scene, surface_options(command, settings));
+  Result<std::unique_ptr<Surfaces>> surfaces = Diagnostics{};
+  std::optional<Film> empty;  // the memory of films takes as long to get as small surfaces to build, on one thread
+  tbb::parallel_invoke([&] { empty = empty_film(scene->film.width, scene->film.height, ready.crop); },
+                       [&] { surfaces = build_surfaces(*scene, surface_options(command, settings)); });
   progress.clear();
   if (!surfaces) return report(surfaces.why(), record.sources, exit_code_of_failed_build(surfaces.why()));
   const auto compiled = compile_transport(*scene, **surfaces, load_environment);
@@ -97,12 +102,11 @@ ExitCode run(const RenderCommand& command) {
                             .tile_size = command.tile_size,
                             .time_limit_s = command.time_limit_s,
                             .progress = [&](const Progress& p) { progress.show(p); },
-                            .interrupted = &interruption_flag()});
-  // All that is left needs the film alone, and the memory of surfaces takes long to give back
-  tbb::task_group meanwhile;
-  meanwhile.run([&] { surfaces->reset(); });
-  const ExitCode code = finish(film, *scene, settings, ready, command.strict, progress);
-  meanwhile.wait();
+                            .interrupted = &interruption_flag()},
+                           std::move(*empty));
+  ExitCode code = ExitCode::Ok;
+  tbb::parallel_invoke([&] { surfaces->reset(); },  // not needed any more, and long to give back
+                       [&] { code = finish(film, *scene, settings, ready, command.strict, progress); });
   return code;
 }
 

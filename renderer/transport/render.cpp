@@ -161,38 +161,37 @@ void render_passes(const Job& job, Film& film, Meter& meter) {
   }
 }
 
-PixelWindow clipped(const PixelWindow& display, const std::optional<PixelWindow>& crop) {
-  if (!crop) return display;
-  PixelWindow data{std::max(display.x0, crop->x0), std::max(display.y0, crop->y0), std::min(display.x1, crop->x1),
-                   std::min(display.y1, crop->y1)};
-  if (data.x0 >= data.x1 || data.y0 >= data.y1) data = {0, 0, 0, 0};
-  return data;
-}
-
 }  // namespace
 
 int sample_count(const RenderSettings& settings) {
   return make_integrator(settings)->noise_free() ? 1 : std::max(settings.samples_per_pixel, 1);
 }
 
-Film render(const RenderScene& scene, const RenderSettings& settings, const RenderOptions& options) {
+Film empty_film(int width, int height, const std::optional<PixelWindow>& crop) {
+  const PixelWindow display{0, 0, width, height};
+  if (!crop) return {display, display};
+  PixelWindow data{std::max(display.x0, crop->x0), std::max(display.y0, crop->y0), std::min(display.x1, crop->x1),
+                   std::min(display.y1, crop->y1)};
+  if (data.x0 >= data.x1 || data.y0 >= data.y1) data = {0, 0, 0, 0};
+  return {display, data};
+}
+
+Film render(const RenderScene& scene, const RenderSettings& settings, const RenderOptions& options, Film film) {
   const DefaultFloatEnvironment defaults;
   const Job job{scene, settings, options};
-  const PixelWindow display{0, 0, scene.width, scene.height};
-  const PixelWindow data = clipped(display, options.crop);
+  Meter meter(options.progress, film.pixels().size() * static_cast<std::uint64_t>(job.samples));
+
   const int threads = options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
   const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  Meter meter(options.progress, static_cast<std::uint64_t>(data.width()) * static_cast<std::uint64_t>(data.height()) *
-                                    static_cast<std::uint64_t>(job.samples));
-  Film film = tbb::task_arena(threads).execute([&] {
-    Film made(display, data);
-    render_passes(job, made, meter);
-    return made;
-  });
+  tbb::task_arena(threads).execute([&] { render_passes(job, film, meter); });
 
   film.elapsed_s = meter.elapsed();
   meter.finish();
   return film;
+}
+
+Film render(const RenderScene& scene, const RenderSettings& settings, const RenderOptions& options) {
+  return render(scene, settings, options, empty_film(scene.width, scene.height, options.crop));
 }
 
 }  // namespace marrow

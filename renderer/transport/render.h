@@ -43,4 +43,8 @@ int sample_count(const RenderSettings&);
 /// number of threads. The integrators `normals` and `depth` take one sample through each pixel's middle.
 Film render(const RenderScene&, const RenderSettings& settings, const RenderOptions& options = {});
 
+/// The same onto a film that was made before, while the scene was: empty_film() of the same size and crop.
+Film render(const RenderScene&, const RenderSettings& settings, const RenderOptions& options, Film empty);
+Film empty_film(int width, int height, const std::optional<PixelWindow>& crop);
+
 }  // namespace marrow
