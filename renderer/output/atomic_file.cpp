@@ -27,7 +27,10 @@ class File {
  public:
   explicit File(int fd) : fd_(fd) {}
   File(File&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  File& operator=(File&&) = delete;
+  File& operator=(File&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
   ~File() {
     if (fd_ >= 0) ::close(fd_);
   }
@@ -39,14 +42,17 @@ class File {
   int fd_;
 };
 
-bool write_all(int fd, Bytes bytes) {
-  constexpr std::size_t largest_write = std::size_t{1} << 30;  // Linux takes at most 2^31 - 4096 at once
-  while (!bytes.empty()) {
-    const ssize_t n = ::write(fd, bytes.data(), std::min(bytes.size(), largest_write));
+constexpr std::size_t largest_write = std::size_t{1} << 30;  // Linux takes at most 2^31 - 4096 at once
+
+// `write_some` takes bytes and how many stand before them.
+template <class WriteSome>
+bool write_all(Bytes bytes, const WriteSome& write_some) {
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t n = write_some(bytes.subspan(done, std::min(bytes.size() - done, largest_write)), done);
     if (n < 0 && errno == EINTR) continue;
     if (n == 0) errno = ENOSPC;
     if (n <= 0) return false;
-    bytes = bytes.subspan(static_cast<std::size_t>(n));
+    done += static_cast<std::size_t>(n);
   }
   return true;
 }
@@ -84,21 +90,9 @@ File create_temporary(const fs::path& folder, fs::path& name) {
 Status write_in_place(const fs::path& path, Bytes bytes) {
   File file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
   if (!file.is_open()) return system_failure("cannot open", path);
-  if (!write_all(file.fd(), bytes)) return system_failure("cannot write", path);
+  if (!write_all(bytes, [&](Bytes b, std::size_t) { return ::write(file.fd(), b.data(), b.size()); }))
+    return system_failure("cannot write", path);
   if (!file.close()) return system_failure("cannot close", path);
-  return Done{};
-}
-
-// Everything up to the rename; the caller removes the temporary if this fails.
-Status fill_and_rename(File file, const fs::path& temporary, const fs::path& target, Bytes bytes) {
-  struct stat old {};
-  if (::stat(target.c_str(), &old) == 0 && ::fchmod(file.fd(), old.st_mode & 07777) != 0)
-    return system_failure("cannot keep the permissions of the old file", target);
-  if (!write_all(file.fd(), bytes)) return system_failure("cannot write", target);
-  if (::fsync(file.fd()) != 0) return system_failure("cannot sync", target);
-  if (!holds(file.fd(), bytes)) return system_failure("the file does not read back as it was written", target);
-  if (!file.close()) return system_failure("cannot close", target);
-  if (::rename(temporary.c_str(), target.c_str()) != 0) return system_failure("cannot rename into place", target);
   return Done{};
 }
 
@@ -112,27 +106,81 @@ Status sync_folder(const fs::path& folder) {
 
 }  // namespace
 
-Status write_file_atomically(const fs::path& path, Bytes bytes) {
+struct AtomicFile::Target {
+  fs::path path;       // as it was named
+  fs::path real;       // where links lead
+  fs::path temporary;  // empty: written in place
+  File file = File(-1);
+  int error = 0;  // of the first part that could not be written
+
+  // Everything up to the rename
+  Status fill_and_rename(Bytes bytes) {
+    struct stat old {};
+    if (::stat(real.c_str(), &old) == 0 && ::fchmod(file.fd(), old.st_mode & 07777) != 0)
+      return system_failure("cannot keep the permissions of the old file", real);
+    if (errno = error; error != 0) return system_failure("cannot write", real);
+    if (::fsync(file.fd()) != 0) return system_failure("cannot sync", real);
+    if (!holds(file.fd(), bytes)) return system_failure("the file does not read back as it was written", real);
+    if (!file.close()) return system_failure("cannot close", real);
+    if (::rename(temporary.c_str(), real.c_str()) != 0) return system_failure("cannot rename into place", real);
+    temporary.clear();
+    return Done{};
+  }
+
+  fs::path folder() const { return real.has_parent_path() ? real.parent_path() : fs::path("."); }
+};
+
+AtomicFile::AtomicFile(std::unique_ptr<Target> target) : target_(std::move(target)) {}
+AtomicFile::AtomicFile(AtomicFile&&) noexcept = default;
+AtomicFile::~AtomicFile() {
+  if (target_ && !target_->temporary.empty()) ::unlink(target_->temporary.c_str());
+}
+
+Result<AtomicFile> AtomicFile::open(const fs::path& path) {
   if (!path.has_filename()) return failure("not the name of a file", path.string());
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (fs::is_directory(status)) return failure("cannot write: is a folder", path.string());
-  if (fs::exists(status) && !fs::is_regular_file(status)) return write_in_place(path, bytes);
+  auto target = std::make_unique<Target>();
+  target->path = path;
+  if (fs::exists(status) && !fs::is_regular_file(status)) return AtomicFile(std::move(target));
 
   // A link is followed, so that the link stays and its target is replaced
-  const fs::path target = fs::is_symlink(fs::symlink_status(path, error)) ? fs::weakly_canonical(path, error) : path;
+  target->real = fs::is_symlink(fs::symlink_status(path, error)) ? fs::weakly_canonical(path, error) : path;
   if (error && error != std::errc::no_such_file_or_directory)
     return failure("cannot resolve: " + error.message(), path.string());
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-
   fs::path temporary;
-  File file = create_temporary(folder, temporary);
-  if (!file.is_open()) return system_failure("cannot create a file in the folder", folder);
-  if (Status written = fill_and_rename(std::move(file), temporary, target, bytes); !written) {
-    ::unlink(temporary.c_str());
-    return written;
-  }
-  return sync_folder(folder);
+  File file = create_temporary(target->folder(), temporary);
+  if (!file.is_open()) return system_failure("cannot create a file in the folder", target->folder());
+  target->temporary = std::move(temporary);
+  target->file = std::move(file);
+  return AtomicFile(std::move(target));
+}
+
+void AtomicFile::put(std::size_t at, Bytes part) {
+  Target& target = *target_;
+  if (target.temporary.empty() || target.error != 0) return;
+  const int fd = target.file.fd();
+  const auto start = static_cast<off_t>(at);
+  if (!write_all(part, [&](Bytes b, std::size_t before) {
+        return ::pwrite(fd, b.data(), b.size(), start + static_cast<off_t>(before));
+      }))
+    target.error = errno;
+  // Only a hint: the sync at the end then has less to wait for
+  ::sync_file_range(fd, start, static_cast<off_t>(part.size()), SYNC_FILE_RANGE_WRITE);
+}
+
+Status AtomicFile::finish(Bytes bytes) {
+  if (target_->temporary.empty()) return write_in_place(target_->path, bytes);
+  if (Status written = target_->fill_and_rename(bytes); !written) return written;
+  return sync_folder(target_->folder());
+}
+
+Status write_file_atomically(const fs::path& path, Bytes bytes) {
+  auto file = AtomicFile::open(path);
+  if (!file) return file.why();
+  file->put(0, bytes);
+  return file->finish(bytes);
 }
 
 }  // namespace marrow
