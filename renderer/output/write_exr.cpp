@@ -1,11 +1,13 @@
 // Writing, by OpenEXR's C interface: parts of a picture are made and compressed by any threads and put together then.
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -136,6 +138,7 @@ class MemoryFile {
   MemoryFile& operator=(const MemoryFile&) = delete;
 
   exr_context_t context() const { return context_; }
+  std::span<const std::byte> bytes() const { return bytes_; }
   void reserve(std::size_t more) { bytes_.reserve(bytes_.size() + more); }
   std::vector<std::byte> finish() {
     require(exr_finish(&context_));  // writes the table of line offsets
@@ -222,34 +225,58 @@ class ChunkEncoder {
   ExrZip zip_;
 };
 
-using Chunks = std::vector<std::vector<std::byte>>;
+// Takes parts of the file as soon as they are known: where they stand, and their bytes.
+using Sink = std::function<void(std::size_t, std::span<const std::byte>)>;
 
-Chunks encoded_chunks(const std::vector<WrittenChannel>& channels, const PixelWindow& data, int rows) {
-  const int count = (data.height() + rows - 1) / rows;
-  Chunks chunks(static_cast<std::size_t>(count));
-  tbb::enumerable_thread_specific<ChunkEncoder> encoders(channels, data);
-  tbb::parallel_for(0, count, [&](int i) {
-    chunks[static_cast<std::size_t>(i)] = encoders.local().encode(data.y0 + i * rows, rows);
-  });
-  return chunks;
-}
+// Puts chunks, which come from any threads, into the file in order.
+class ChunkWriter {
+ public:
+  ChunkWriter(MemoryFile& file, int y0, int rows, int count, const Sink& sink)
+      : file_(file), y_(y0), rows_(rows), waiting_(static_cast<std::size_t>(count)), sink_(sink) {}
 
-void write_pixels(MemoryFile& file, const std::vector<WrittenChannel>& channels, const PixelWindow& data) {
-  std::int32_t rows = 0;
-  require(exr_get_scanlines_per_chunk(file.context(), part, &rows));
-  const Chunks chunks = encoded_chunks(channels, data, rows);
-  std::size_t size = 0;
-  for (const auto& chunk : chunks) size += chunk.size() + 16;  // its row, its size, and where it is
-  file.reserve(size);
-  for (int y = data.y0; const auto& chunk : chunks) {
-    require(exr_write_scanline_chunk(file.context(), part, y, chunk.data(), chunk.size()));
-    y += rows;
+  void put(int index, std::vector<std::byte> chunk) {
+    const std::lock_guard lock(mutex_);
+    waiting_[static_cast<std::size_t>(index)] = std::move(chunk);
+    const std::size_t before = file_.bytes().size();
+    for (; next_ < waiting_.size() && !waiting_[next_].empty(); ++next_, y_ += rows_) {
+      const std::vector<std::byte> bytes = std::move(waiting_[next_]);
+      require(exr_write_scanline_chunk(file_.context(), part, y_, bytes.data(), bytes.size()));
+    }
+    if (file_.bytes().size() > before) sink_(before, file_.bytes().subspan(before));
   }
+
+ private:
+  MemoryFile& file_;
+  int y_, rows_;
+  std::vector<std::vector<std::byte>> waiting_;
+  std::size_t next_ = 0;
+  const Sink& sink_;
+  std::mutex mutex_;
+};
+
+void write_pixels(MemoryFile& file, const std::vector<WrittenChannel>& channels, const PixelWindow& data,
+                  const Sink& sink) {
+  std::int32_t rows = 0, count = 0;
+  require(exr_get_scanlines_per_chunk(file.context(), part, &rows));
+  require(exr_get_chunk_count(file.context(), part, &count));
+  ChunkWriter writer(file, data.y0, rows, count, sink);
+  tbb::enumerable_thread_specific<ChunkEncoder> encoders(channels, data);
+  std::atomic<int> taken = 0;  // in order, so that no thread is far ahead
+  tbb::parallel_for(0, count, [&](int) {
+    const int i = taken++;
+    writer.put(i, encoders.local().encode(data.y0 + i * rows, rows));
+  });
 }
 
-}  // namespace
+// The most that a file can take, of which only what it does take becomes memory.
+std::size_t most_bytes(const std::vector<WrittenChannel>& channels, const PixelWindow& data) {
+  std::size_t of_pixel = 0;
+  for (const WrittenChannel& c : channels) of_pixel += c.type == EXR_PIXEL_HALF ? 2 : 4;
+  const auto width = static_cast<std::size_t>(data.width()), height = static_cast<std::size_t>(data.height());
+  return (width * of_pixel + 16) * height;  // 16: the row of a chunk, its size, and where it is
+}
 
-Result<std::vector<std::byte>> encode_exr(const PictureRows& picture, ExrColor color) {
+Result<std::vector<std::byte>> encode(const PictureRows& picture, ExrColor color, const Sink& sink) {
   if (Status fine = check(picture); !fine) return fine.why();
   const auto channels = written_channels(picture, color);
   if (!channels) return channels.why();
@@ -258,9 +285,16 @@ Result<std::vector<std::byte>> encode_exr(const PictureRows& picture, ExrColor c
   try {
     MemoryFile file;
     write_header(file.context(), picture, *channels, *entries);
-    write_pixels(file, *channels, picture.data);
+    file.reserve(most_bytes(*channels, picture.data));
+    write_pixels(file, *channels, picture.data, sink);
     return file.finish();
   } catch (const std::exception& e) { return failure(std::string("cannot encode as EXR: ") + e.what()); }
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> encode_exr(const PictureRows& picture, ExrColor color) {
+  return encode(picture, color, [](std::size_t, std::span<const std::byte>) {});
 }
 
 Result<std::vector<std::byte>> encode_exr(const Picture& picture, ExrColor color) {
@@ -270,13 +304,20 @@ Result<std::vector<std::byte>> encode_exr(const Picture& picture, ExrColor color
 }
 
 Status write_exr(const std::filesystem::path& path, const PictureRows& picture, ExrColor color) {
-  const auto bytes = encode_exr(picture, color);
+  auto file = AtomicFile::open(path);
+  if (!file) return file.why();
+  std::size_t head = 0;  // where the first part ends; before it stands what is known only at the end
+  const auto bytes = encode(picture, color, [&](std::size_t at, std::span<const std::byte> part) {
+    if (head == 0) head = at + part.size();
+    file->put(at, part);
+  });
   if (!bytes) {
     Diagnostics why = bytes.why();
     for (Diagnostic& d : why) d.where.file = path.string();
     return why;
   }
-  return write_file_atomically(path, *bytes);
+  file->put(0, std::span(*bytes).first(head));
+  return file->finish(*bytes);
 }
 
 Status write_exr(const std::filesystem::path& path, const Picture& picture, ExrColor color) {
