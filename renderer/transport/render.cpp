@@ -118,9 +118,8 @@ void render_pass(const Job& job, const std::vector<PixelWindow>& tiles, Pass pas
 
 // Before the first pass: all its rays then meet space that is divided, through surfaces that are refined.
 void scout(const Job& job, const PixelWindow& window) {
-  for (const int step : scout_steps) {
-    for_each_tile(job, tiles_of(window, scouted_side(step)),
-                  [&](const PixelWindow& tile) { send_scouts(job.pixels, tile, step); });
+  for (const auto [step, side] : scout_rounds) {
+    for_each_tile(job, tiles_of(window, side), [&](const PixelWindow& tile) { send_scouts(job.pixels, tile, step); });
     job.scene.surfaces->refine();
   }
 }

@@ -5,12 +5,14 @@
 
 namespace marrow {
 
-/// Pixels between the paths of one round of scouts and the next: few of them first, so that most of them meet surfaces
-/// that are already divided for rays like them.
-inline constexpr int scout_steps[] = {32, 8};
+/// The paths of every `step`-th pixel along both axes; those of a window of `side` x `side` pixels go together.
+struct ScoutRound {
+  int step, side;
+};
 
-/// The side of a window whose scouts go together.
-constexpr int scouted_side(int step) { return 16 * step; }
+/// Few paths first, so that most meet surfaces that are already divided for rays like them; and in so many windows that
+/// threads end together, as the first divide space.
+inline constexpr ScoutRound scout_rounds[] = {{32, 256}, {8, 128}};
 
 /// The paths of every `step`-th pixel of the window along both axes, which leave nothing in the picture but surfaces
 /// that know where rays go: Surfaces::refine() makes use of it.
