@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_invoke.h>
 
 #include "renderer/app/commands.h"
@@ -66,6 +67,13 @@ SurfaceOptions surface_options(const RenderCommand& command, const RenderSetting
           .one_sample = sample_count(settings) == 1};
 }
 
+// 0: as many as the machine has.
+std::size_t most_threads(int asked) {
+  using tbb::global_control;
+  return asked > 0 ? static_cast<std::size_t>(asked)
+                   : global_control::active_value(global_control::max_allowed_parallelism);
+}
+
 // A problem with a place is the scene's; one without is the machine's: an instruction set that is not there.
 ExitCode exit_code_of_failed_build(const Diagnostics& why) {
   const bool in_scene = std::any_of(why.begin(), why.end(), [](const auto& d) { return !d.where.file.empty(); });
@@ -84,6 +92,7 @@ ExitCode run(const RenderCommand& command) {
   if (const auto* stop = std::get_if<Stop>(&prepared)) return report(stop->why, stop->code);
   const auto& ready = std::get<Preparation>(prepared);
 
+  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, most_threads(command.threads));
   ProgressLine progress(command.progress);
   progress.phase("building");
   const RenderSettings settings = settings_over(command, scene->render);

@@ -2,11 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <charconv>
-#include <cstdlib>
 #include <cstring>
-#include <ctime>
-#include <map>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -16,13 +12,13 @@
 
 #include <Imath/half.h>
 #include <OpenEXR/openexr.h>
-#include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include "field/base/overloaded.h"
 #include "renderer/output/atomic_file.h"
 #include "renderer/output/exr.h"
+#include "renderer/output/exr_header.h"
 #include "renderer/output/exr_zip.h"
 
 namespace marrow {
@@ -46,37 +42,7 @@ Status check(const PictureRows& picture) {
 
 // ---- header ----
 
-// As the EXR standard writes dates.   [https://reproducible-builds.org/specs/source-date-epoch/]
-Result<std::string> capture_date() {
-  std::time_t when = std::time(nullptr);
-  if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
-    const std::string_view text(epoch);
-    long long seconds = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-    if (error != std::errc{} || end != text.data() + text.size())
-      return failure("SOURCE_DATE_EPOCH is \"" + std::string(text) + "\", not a whole number of seconds");
-    when = static_cast<std::time_t>(seconds);
-  }
-  std::tm t{};
-  if (!gmtime_r(&when, &t)) return failure("SOURCE_DATE_EPOCH is beyond the calendar");
-  return fmt::format("{:04}:{:02}:{:02} {:02}:{:02}:{:02}", t.tm_year + 1900, t.tm_mon + 1, t.tm_mday, t.tm_hour,
-                     t.tm_min, t.tm_sec);
-}
-
-using Entries = std::map<std::string, Metadata>;
-
-Result<Entries> header_entries(const PictureRows& picture) {
-  const Result<std::string> date = capture_date();
-  if (!date) return date.why();
-  const bool has_color = std::ranges::any_of(picture.channels, [](const auto& c) { return c.name == "R"; });
-  Entries entries{{"Software", std::string("marrow " MARROW_VERSION)},
-                  {"capDate", *date},
-                  {"colorInteropID", std::string(has_color ? "lin_rec709_scene" : "data")}};
-  for (const auto& [name, value] : picture.metadata) entries.insert_or_assign(name, value);
-  return entries;
-}
-
-std::optional<exr_attr_chromaticities_t> chromaticities(const Entries& entries) {
+std::optional<exr_attr_chromaticities_t> chromaticities(const HeaderEntries& entries) {
   const auto* id = std::get_if<std::string>(&entries.at("colorInteropID"));
   if (!id) return {};
   if (*id == "lin_rec709_scene")  // Rec. ITU-R BT.709-6, item 1.3 and 1.4
@@ -159,7 +125,7 @@ class MemoryFile {
 };
 
 void write_header(exr_context_t file, const PictureRows& picture, const std::vector<WrittenChannel>& channels,
-                  const Entries& entries) {
+                  const HeaderEntries& entries) {
   require(exr_add_part(file, nullptr, EXR_STORAGE_SCANLINE, nullptr));
   require(exr_set_longname_support(file, 1));
   const exr_attr_box2i_t display = box_of(picture.display), data = box_of(picture.data);
@@ -271,7 +237,7 @@ void write_pixels(MemoryFile& file, const std::vector<WrittenChannel>& channels,
 // The most that a file can take, of which only what it does take becomes memory.
 std::size_t most_bytes(const std::vector<WrittenChannel>& channels, const PixelWindow& data) {
   std::size_t of_pixel = 0;
-  for (const WrittenChannel& c : channels) of_pixel += c.type == EXR_PIXEL_HALF ? 2 : 4;
+  for (const WrittenChannel& c : channels) of_pixel += c.bytes();
   const auto width = static_cast<std::size_t>(data.width()), height = static_cast<std::size_t>(data.height());
   return (width * of_pixel + 16) * height;  // 16: the row of a chunk, its size, and where it is
 }
