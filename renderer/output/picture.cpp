@@ -5,6 +5,18 @@
 #include <fmt/format.h>
 
 namespace marrow {
+namespace {
+
+template <class T>
+std::vector<T> gathered(const std::function<void(int, std::span<T>)>& fill, const PixelWindow& data) {
+  const auto width = static_cast<std::size_t>(data.width());
+  std::vector<T> samples(width * static_cast<std::size_t>(data.height()));
+  for (int y = data.y0; y < data.y1; ++y)
+    fill(y, std::span(samples).subspan(static_cast<std::size_t>(y - data.y0) * width, width));
+  return samples;
+}
+
+}  // namespace
 
 Result<PictureRows> rows_of(const Picture& picture) {
   PictureRows rows{picture.display, picture.data, {}, picture.metadata};
@@ -24,6 +36,15 @@ Result<PictureRows> rows_of(const Picture& picture) {
     if (Status added = std::visit([&](const auto& samples) { return add(c.name, samples); }, c.samples); !added)
       return added.why();
   return rows;
+}
+
+Picture picture_of(const PictureRows& rows) {
+  Picture picture{.display = rows.display, .data = rows.data, .channels = {}, .metadata = rows.metadata};
+  for (const ChannelRows& c : rows.channels) {
+    const auto gather = [&](const auto& fill) -> decltype(Channel::samples) { return gathered(fill, rows.data); };
+    picture.channels.push_back({c.name, std::visit(gather, c.fill)});
+  }
+  return picture;
 }
 
 }  // namespace marrow

@@ -53,7 +53,10 @@ struct PictureRows {
   std::vector<std::pair<std::string, Metadata>> metadata;
 };
 
-/// A picture in memory as one that is made row by row; an error if a channel has too few samples or too many.
+/// A picture in memory as one that is made row by row, from the picture itself, which must outlive it; an error if a
+/// channel has too few samples or too many.
 Result<PictureRows> rows_of(const Picture&);
+/// All rows, in memory.
+Picture picture_of(const PictureRows&);
 
 }  // namespace marrow

@@ -257,6 +257,11 @@ Result<std::vector<std::byte>> encode(const PictureRows& picture, ExrColor color
   } catch (const std::exception& e) { return failure(std::string("cannot encode as EXR: ") + e.what()); }
 }
 
+Diagnostics of_file(const std::filesystem::path& path, Diagnostics why) {
+  for (Diagnostic& d : why) d.where.file = path.string();
+  return why;
+}
+
 }  // namespace
 
 Result<std::vector<std::byte>> encode_exr(const PictureRows& picture, ExrColor color) {
@@ -277,22 +282,14 @@ Status write_exr(const std::filesystem::path& path, const PictureRows& picture, 
     if (head == 0) head = at + part.size();
     file->put(at, part);
   });
-  if (!bytes) {
-    Diagnostics why = bytes.why();
-    for (Diagnostic& d : why) d.where.file = path.string();
-    return why;
-  }
+  if (!bytes) return of_file(path, bytes.why());
   file->put(0, std::span(*bytes).first(head));
   return file->finish(*bytes);
 }
 
 Status write_exr(const std::filesystem::path& path, const Picture& picture, ExrColor color) {
   const auto rows = rows_of(picture);
-  if (!rows) {
-    Diagnostics why = rows.why();
-    for (Diagnostic& d : why) d.where.file = path.string();
-    return why;
-  }
+  if (!rows) return of_file(path, rows.why());
   return write_exr(path, *rows, color);
 }
 

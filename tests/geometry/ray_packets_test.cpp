@@ -147,15 +147,23 @@ struct Comparison {
   }
 };
 
+// The same twice: to be refined, and never.
+struct Twins {
+  std::unique_ptr<EmbreeSurfaces> surfaces, whole;
+};
+Twins twins(Random& random, const BlendField& blend, const std::string& isa) {
+  const std::string config = "threads=1,max_isa=" + isa;
+  Random again = random;
+  return {everything(random, blend, config), everything(again, blend, config)};
+}
+
 // Packets of sixteen, eight and four in Embree, or single rays, and from whole elements down to single cells.
 TEST(RayPackets, EqualSingleRays) {
   for (const std::string isa : {"sse4.2", "avx2", "avx512"}) {
     Random random(131);
     Comparison camera, faces, shadows, mixed, few;
     const BlendField blend = random_scene(random, {4, contact_alpha(4)}, 5);
-    Random again = random;
-    const auto surfaces = everything(random, blend, "threads=1,max_isa=" + isa);
-    const auto whole = everything(again, blend, "threads=1,max_isa=" + isa);
+    const auto [surfaces, whole] = twins(random, blend, isa);
     for (int i = 0; i < 80; ++i) {
       if (i % 15 == 14) surfaces->refine();
       camera.check(*surfaces, *whole, of_a_camera(random));
@@ -197,9 +205,7 @@ TEST(RayPackets, EqualSingleRaysNearAnAxis) {
     Random random(133);
     Comparison all;
     const BlendField blend = random_scene(random, {4, 0.3}, 5);
-    Random again = random;
-    const auto surfaces = everything(random, blend, "threads=1,max_isa=" + isa);
-    const auto whole = everything(again, blend, "threads=1,max_isa=" + isa);
+    const auto [surfaces, whole] = twins(random, blend, isa);
     for (int i = 0; i < 80; ++i) {
       if (i % 15 == 14) surfaces->refine();
       all.check(*surfaces, *whole, near_an_axis(random));

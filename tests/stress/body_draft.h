@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/stress/drawing.h"
 #include "tests/stress/tree_drafts.h"
 #include "tests/tree/random_tree.h"
 
@@ -17,7 +18,7 @@ inline bool maybe(Random& random, double share = 0.5) { return random.between(0,
 inline double sign(Random& random) { return maybe(random) ? 1 : -1; }
 
 // None, a rounding, or up to a tenth, to either side.
-inline double gap(Random& random) { return maybe(random, 0.3) ? 0 : sign(random) * pow(10, random.between(-14, -1)); }
+inline double gap(Random& random) { return maybe(random, 0.3) ? 0 : sign(random) * power_of_ten(random, -14, -1); }
 
 inline Potential potential(Random& random, double range) {
   switch (random.whole(0, 3)) {
@@ -31,7 +32,7 @@ inline Potential potential(Random& random, double range) {
       return WyvillProfile{range};
   }
 }
-inline Potential potential(Random& random) { return potential(random, pow(10, random.between(-1.5, 0.3))); }
+inline Potential potential(Random& random) { return potential(random, power_of_ten(random, -1.5, 0.3)); }
 
 // What a kind of scene draws: bodies that stand beside each other.
 class BodyDraft {

@@ -7,13 +7,13 @@
 
 #include "field/blend/contact.h"
 #include "field/math/elementary.h"
+#include "tests/stress/drawing.h"
 #include "tests/trace/random_scene.h"
 
 namespace marrow::test {
 namespace {
 
 double either_side(Random& random) { return random.between(0, 1) < 0.5 ? -1 : 1; }
-double power_of_ten(Random& random, double least, double most) { return pow(10, random.between(least, most)); }
 
 // On both sides of every angle at which something changes, to 1e-9.
 double odd_angle(Random& random, const BlendField& blend) {

@@ -7,13 +7,12 @@
 #include <utility>
 
 #include "field/blend/contact.h"
+#include "tests/stress/drawing.h"
 #include "tests/stress/odd_drafts.h"
 #include "tests/trace/random_scene.h"
 
 namespace marrow::test {
 namespace {
-
-double power_of_ten(Random& random, double least, double most) { return pow(10, random.between(least, most)); }
 
 // 0 more often than not, or as little as a double or a float tells, or more.
 double hardly_any(Random& random) { return maybe(random) ? 0 : sign(random) * power_of_ten(random, -16, -3); }

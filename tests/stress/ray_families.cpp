@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "field/math/elementary.h"
+#include "tests/stress/drawing.h"
 
 namespace marrow::test {
 namespace {
@@ -155,8 +156,6 @@ Ray on_surface(Random& random, const StressScene& s) {
   const Vec3d flat = direction - normal * dot(direction, normal);
   return {p, normalize(tangential ? flat : direction)};
 }
-
-double power_of_ten(Random& random, double least, double most) { return pow(10, random.between(least, most)); }
 
 // From or to a place at, before or behind its first hit.
 Ray cut_at_hit(Random& random, const StressScene& s, Ray ray) {

@@ -46,7 +46,7 @@ TEST(Film, PictureHasTheChannelsThatItsHeaderNames) {
   film.at(2, 1).add({.radiance = Rgb(1, 2, 3), .albedo = Rgb(0.25), .covered = true});
   film.at(2, 1).centre.object = 7;
   film.at(1, 0).centre.certified = false;
-  const Picture picture = to_picture(film);
+  const Picture picture = picture_of(to_rows(film));
   std::string names;
   for (const Channel& c : picture.channels) names += c.name + ' ';
   EXPECT_EQ(names,

@@ -39,8 +39,9 @@ void expect_same_bits(const Picture& a, const Picture& b) {
 TEST(Render, BitsDoNotDependOnThreads) {
   const RenderScene scene = studio(70, 50);
   const RenderSettings settings{.samples_per_pixel = 5};
-  const Picture one = to_picture(render(scene, settings, {.threads = 1}));
-  for (const int threads : {0, 2, 7}) expect_same_bits(one, to_picture(render(scene, settings, {.threads = threads})));
+  const Picture one = picture_of(to_rows(render(scene, settings, {.threads = 1})));
+  for (const int threads : {0, 2, 7})
+    expect_same_bits(one, picture_of(to_rows(render(scene, settings, {.threads = threads}))));
 }
 
 // Blocks of pixels whose rays go together are cut by tiles.
@@ -48,8 +49,9 @@ TEST(Render, BitsDoNotDependOnTiles) {
   const RenderScene scene = studio(37, 21);
   for (const int samples : {1, 4}) {
     const RenderSettings settings{.samples_per_pixel = samples};
-    const Picture usual = to_picture(render(scene, settings, {.tile_size = 16}));
-    for (const int side : {1, 3, 7}) expect_same_bits(usual, to_picture(render(scene, settings, {.tile_size = side})));
+    const Picture usual = picture_of(to_rows(render(scene, settings, {.tile_size = 16})));
+    for (const int side : {1, 3, 7})
+      expect_same_bits(usual, picture_of(to_rows(render(scene, settings, {.tile_size = side}))));
   }
 }
 
@@ -92,12 +94,12 @@ TEST(Render, RaysOfABlockOfPixelsGoTogether) {
 TEST(Render, BitsDoNotDependOnTheHostsFloatingPointSettings) {
   const RenderScene scene = studio(40, 30);
   const RenderSettings settings{.samples_per_pixel = 3};
-  const Picture usual = to_picture(render(scene, settings, {.threads = 2}));
+  const Picture usual = picture_of(to_rows(render(scene, settings, {.threads = 2})));
   std::fesetround(FE_UPWARD);
   const Film film = render(scene, settings, {.threads = 2});
   EXPECT_EQ(std::fegetround(), FE_UPWARD);  // the host keeps its own
   std::fesetround(FE_TONEAREST);
-  expect_same_bits(usual, to_picture(film));
+  expect_same_bits(usual, picture_of(to_rows(film)));
 }
 
 TEST(Render, CropEqualsTheWholeBitByBit) {

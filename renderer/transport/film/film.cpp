@@ -62,8 +62,7 @@ FilmSummary summary_of_row(std::span<const PixelSums> row, const PixelWindow& da
   FilmSummary found{.invalid = {}, .fewest_samples = row.front().samples(), .most_samples = row.front().samples()};
   for (std::size_t i = 0; i < row.size(); ++i) {
     const PixelSums& p = row[i];
-    if (p.invalid() > 0 && found.invalid.count == 0)
-      found.invalid.x = data.x0 + static_cast<int>(i), found.invalid.y = y;
+    if (p.invalid() > 0 && found.invalid.count == 0) found.invalid = {0, data.x0 + static_cast<int>(i), y};
     found.invalid.count += p.invalid();
     found.uncertified_pixels += !p.centre.certified;
     found.fewest_samples = std::min(found.fewest_samples, p.samples());

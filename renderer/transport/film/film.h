@@ -109,9 +109,7 @@ class Film {
 /// (id + 1, 0: none), samples, field.evals and field.certified (1: it is proved that the ray through the pixel's middle
 /// skipped no surface before its hit, or anywhere if it met none; 0: a gap stayed undecided) as unsigned. A is the
 /// share of samples that met a surface or a visible light; R G B also hold what is seen of the environment. No
-/// metadata. The rows are made from the film when they are asked for.
+/// metadata. The rows are made from the film, which must outlive them, when they are asked for.
 PictureRows to_rows(const Film&);
-/// The same in memory.
-Picture to_picture(const Film&);
 
 }  // namespace marrow

@@ -3,9 +3,6 @@
 #include <span>
 #include <string>
 #include <utility>
-#include <vector>
-
-#include <tbb/parallel_for.h>
 
 #include "renderer/transport/film/film.h"
 
@@ -34,15 +31,6 @@ void add_vector(PictureRows& picture, const Film& film, const std::string& prefi
   add<float>(picture, film, prefix + ".Z", [value](const PixelSums& p) { return value(p)[2]; });
 }
 
-template <class T>
-std::vector<T> gathered(const std::function<void(int, std::span<T>)>& fill, const PixelWindow& data) {
-  const auto width = static_cast<std::size_t>(data.width());
-  std::vector<T> samples(width * static_cast<std::size_t>(data.height()));
-  for (int y = data.y0; y < data.y1; ++y)
-    fill(y, std::span(samples).subspan(static_cast<std::size_t>(y - data.y0) * width, width));
-  return samples;
-}
-
 }  // namespace
 
 PictureRows to_rows(const Film& film) {
@@ -58,17 +46,6 @@ PictureRows to_rows(const Film& film) {
   add<std::uint32_t>(picture, film, "samples", [](const PixelSums& p) { return p.samples(); });
   add<std::uint32_t>(picture, film, "field.evals", [](const PixelSums& p) { return p.centre.evaluations; });
   add<std::uint32_t>(picture, film, "field.certified", [](const PixelSums& p) { return p.centre.certified; });
-  return picture;
-}
-
-Picture to_picture(const Film& film) {
-  const PictureRows rows = to_rows(film);
-  Picture picture{.display = rows.display, .data = rows.data, .channels = {}, .metadata = {}};
-  picture.channels.resize(rows.channels.size());
-  tbb::parallel_for(std::size_t{0}, rows.channels.size(), [&](std::size_t c) {
-    const auto gather = [&](const auto& fill) -> decltype(Channel::samples) { return gathered(fill, rows.data); };
-    picture.channels[c] = {rows.channels[c].name, std::visit(gather, rows.channels[c].fill)};
-  });
   return picture;
 }
 
