@@ -26,6 +26,7 @@ namespace {
 #include "field/trace/kernels/first_root.h"
 #include "field/trace/kernels/walk.h"
 #include "field/trace/kernels/points.h"
+#include "field/trace/kernels/surface_starts.h"
 #include "field/trace/kernels/cube.h"
 #include "field/trace/kernels/moments.h"
 #include "field/trace/kernels/split.h"
@@ -33,9 +34,9 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root,    nullptr,       nullptr,        point_field,
-                                        walk,          cube_bounds,   far_moments,    far_split,
-                                        octant_bounds, strand_shares, strand_samples, add_strand};
+  static constexpr BlockKernels kernels{first_root,    nullptr,        nullptr,     point_field, surface_starts,
+                                        walk,          cube_bounds,    far_moments, far_split,   octant_bounds,
+                                        strand_shares, strand_samples, add_strand};
   return kernels;
 }
 

@@ -94,26 +94,62 @@ bool EmbreeSurfaces::Division::is_like(const Division& b) const {
          std::fabs(area - b.area) <= much * b.area;
 }
 
-std::optional<SurfaceHit> EmbreeSurfaces::hit_of(const PartHierarchy::Hit& found, const PlaneHit& behind,
-                                                 const Ray& ray) const {
-  SurfaceHit hit;
-  if (found.found) {
-    const PlacedSolid& placed = solids_[found.solid];
+// Hits of one solid that follow each other are described together.
+class EmbreeSurfaces::Describing {
+ public:
+  explicit Describing(const EmbreeSurfaces& surfaces) : surfaces_(surfaces) {}
+  Describing(const Describing&) = delete;
+  Describing& operator=(const Describing&) = delete;
+  ~Describing() { describe(); }
+
+  // The hit must stay where it is until this ends, and the ray, too.
+  void add(const PartHierarchy::Hit& found, const Ray& ray, SurfaceHit& hit) {
+    const PlacedSolid& placed = surfaces_.solids_[found.solid];
     hit.t = found.t;
     hit.position = ray.at(found.t);
     hit.object = placed.object;
-    placed.solid->describe(found.element, found.place, ray, hit);
-    return hit;
+    if (placed.solid.get() != solid_ || count_ == waiting_.size()) describe();
+    solid_ = placed.solid.get();
+    waiting_[count_++] = {found.element, found.place, &ray, &hit};
   }
-  const auto& [plane, t] = behind;
-  if (plane == nullptr) return {};
+
+ private:
+  void describe() {
+    if (count_ > 0) solid_->describe(std::span(waiting_).first(count_));
+    count_ = 0;
+  }
+
+  const EmbreeSurfaces& surfaces_;
+  const Solid* solid_ = nullptr;
+  std::array<HitToDescribe, 16> waiting_;
+  std::size_t count_ = 0;
+};
+
+std::optional<SurfaceHit> EmbreeSurfaces::hit_of(const PartHierarchy::Hit& found, const PlaneHit& behind,
+                                                 const Ray& ray) const {
+  std::optional<SurfaceHit> hit;
+  describe(std::span(&found, 1), std::span(&behind, 1), std::span(&ray, 1), std::span(&hit, 1));
+  return hit;
+}
+
+void EmbreeSurfaces::describe(std::span<const PartHierarchy::Hit> found, std::span<const PlaneHit> behind,
+                              std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits) const {
+  Describing describing(*this);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    hits[i].reset();
+    if (found[i].found) describing.add(found[i], rays[i], hits[i].emplace());
+    else if (!behind.empty() && behind[i].plane != nullptr) describe(behind[i], rays[i], hits[i].emplace());
+  }
+}
+
+void EmbreeSurfaces::describe(const PlaneHit& of, const Ray& ray, SurfaceHit& hit) {
+  const auto& [plane, t] = of;
   hit.t = t;
   hit.position = ray.at(t);
   hit.normal = dot(plane->normal, ray.direction) <= 0 ? plane->normal : -plane->normal;
   hit.outside = lifted(hit.position, plane->point, hit.normal);
   hit.object = plane->object;
   hit.material = plane->material;
-  return hit;
 }
 
 // Of a ray that begins inside only whole elements tell.
@@ -158,10 +194,9 @@ void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::option
   const BeforePlanes before(*this, rays);
   std::vector<PartHierarchy::Hit> found(rays.size());
   stream_first_hits(finest(), before.rays, found, {});
-  for (std::size_t i = 0; i < rays.size(); ++i) {
+  for (std::size_t i = 0; i < rays.size(); ++i)
     if (found[i].begins_inside) found[i] = asked_of_elements(before.rays[i], nullptr);
-    hits[i] = hit_of(found[i], before.plane(i), rays[i]);
-  }
+  describe(found, before.planes(), rays, hits);
 }
 
 void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits,
@@ -175,8 +210,8 @@ void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::option
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (found[i].begins_inside) found[i] = asked_of_elements(before.rays[i], &visits[i]);
     records[i] = record_of(visits[i], found[i].undecided, std::min({found[i].t, before.plane(i).t, rays[i].t_max}));
-    hits[i] = hit_of(found[i], before.plane(i), rays[i]);
   }
+  describe(found, before.planes(), rays, hits);
 }
 
 void EmbreeSurfaces::occluded(std::span<const Ray> rays, std::span<std::uint8_t> hidden) const {

@@ -70,6 +70,7 @@ class EmbreeSurfaces final : public Surfaces {
     BeforePlanes(const BeforePlanes&) = delete;
     BeforePlanes& operator=(const BeforePlanes&) = delete;
     PlaneHit plane(std::size_t ray) const { return planes_.empty() ? PlaneHit{} : planes_[ray]; }
+    std::span<const PlaneHit> planes() const { return planes_; }
     std::span<const Ray> rays;
 
    private:
@@ -79,7 +80,12 @@ class EmbreeSurfaces final : public Surfaces {
   PartHierarchy::Hit asked_of_elements(const Ray&, std::vector<RayVisit>*) const;
   PartHierarchy::Hit nearest_on(const Ray&, std::vector<RayVisit>*) const;
   const PartHierarchy& finest() const { return *finest_.load(std::memory_order_acquire); }
-  std::optional<SurfaceHit> hit_of(const PartHierarchy::Hit&, const PlaneHit&, const Ray&) const;
+  std::optional<SurfaceHit> hit_of(const PartHierarchy::Hit&, const PlaneHit& behind, const Ray&) const;
+  // `behind`: the planes of all rays, or none at all.
+  void describe(std::span<const PartHierarchy::Hit>, std::span<const PlaneHit> behind, std::span<const Ray>,
+                std::span<std::optional<SurfaceHit>>) const;
+  static void describe(const PlaneHit&, const Ray&, SurfaceHit&);
+  class Describing;
 
   std::vector<PlacedSolid> solids_;
   std::vector<PlacedPlane> planes_;

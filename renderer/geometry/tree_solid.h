@@ -17,7 +17,7 @@ class TreeSolid final : public Solid {
   Box3 element_box(std::size_t element) const override { return tracer_.cell_box(element); }
   Box3 extent() const override { return tracer_.bounds(); }
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
-  void describe(std::size_t, const void*, const Ray&, SurfaceHit&) const override;
+  void describe(std::span<const HitToDescribe>) const override;
   std::size_t primitive_count() const override;
   std::size_t bytes() const override { return tracer_.bytes(); }
 

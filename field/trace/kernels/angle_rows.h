@@ -41,6 +41,7 @@ inline TableStep<V16> step_at(const float* steps, Index16 entry) {
 template <class F>
 struct RowPlace {
   F sine, cosine, v, inverse_step, last, at, fraction;
+  IntOf<F> entry;
   TableStep<F> step;
 
   RowPlace(const AngleTables& tables, IntOf<F> row, F x, F y)
@@ -53,12 +54,18 @@ struct RowPlace {
     const F from = max_of(at, 0.0F);
     const IntOf<F> index = whole_part(min_of(from, last - 0.5F));
     fraction = from - to_float(index);
-    step = step_at(tables.steps, row * tables.stride + index);
+    entry = row * tables.stride + index;
+    step = step_at(tables.steps, entry);
   }
   F slope() const { return step.next_value - step.value; }
   F value() const { return step.value + slope() * fraction; }
   F lower() const { return step.lower + (step.next_lower - step.lower) * fraction; }
   MaskOf<F> beyond() const { return at >= last; }
+  // Of the curve itself, from its slopes at the entries; level beyond the last one.
+  F exact_slope(const AngleTables& tables) const {
+    const F low = gather(tables.slopes, entry);
+    return low + (gather(tables.slopes + 1, entry) - low) * min_of(fraction, 1.0F);
+  }
 };
 
 // All that the tables give is cubic in the share of the range, through the four around it.

@@ -48,26 +48,30 @@ inline V16 field_of(V16 share, V16 tau, V16 inv, int exponent) {
   return share * inverse_power<Exponent>(tau * tau * inv, exponent);
 }
 
-// Sums over 16 lanes of 12 accumulators at once, in as many lanes, as a tree: halves, quarters, pairs, single lanes.
-inline V16 lane_sums(const V16 (&a)[12]) {
-  V16 b[6], c[3], d[2];
-  for (int i = 0; i < 6; ++i)
+// Sums over 16 lanes of 12 or 16 accumulators at once, in as many lanes, as a tree: halves, quarters, pairs, single
+// lanes.
+template <int Count>
+inline V16 lane_sums(const V16 (&a)[Count]) {
+  static_assert(Count == 12 || Count == 16);
+  constexpr int quads = Count / 4;
+  V16 b[Count / 2], c[4] = {}, d[2];
+  for (int i = 0; i < Count / 2; ++i)
     b[i] =
         __builtin_shufflevector(a[2 * i], a[2 * i + 1], 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23) +
         __builtin_shufflevector(a[2 * i], a[2 * i + 1], 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
-  for (int i = 0; i < 3; ++i)
+  for (int i = 0; i < quads; ++i)
     c[i] = __builtin_shufflevector(b[2 * i], b[2 * i + 1], 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27) +
            __builtin_shufflevector(b[2 * i], b[2 * i + 1], 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31);
-  const V16 zero{};
   for (int i = 0; i < 2; ++i) {
-    const V16 lo = c[2 * i], hi = i == 0 ? c[1] : zero;
+    const V16 lo = c[2 * i], hi = c[2 * i + 1];
     d[i] = __builtin_shufflevector(lo, hi, 0, 1, 4, 5, 8, 9, 12, 13, 16, 17, 20, 21, 24, 25, 28, 29) +
            __builtin_shufflevector(lo, hi, 2, 3, 6, 7, 10, 11, 14, 15, 18, 19, 22, 23, 26, 27, 30, 31);
   }
   return __builtin_shufflevector(d[0], d[1], 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30) +
          __builtin_shufflevector(d[0], d[1], 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
 }
-inline void sum_lanes(const V16 (&a)[12], float (&sums)[16]) {
+template <int Count>
+inline void sum_lanes(const V16 (&a)[Count], float (&sums)[16]) {
   const V16 s = lane_sums(a);
   __builtin_memcpy(sums, &s, sizeof s);
 }

@@ -60,7 +60,7 @@ struct FullSums {
 
 template <int Exponent>
 inline void add_full_sums(const float* group, int groups, int exponent, const float p[3], V16& nearest, FullSums& out) {
-  V16 a[12] = {}, b[12] = {};
+  V16 a[16] = {}, closest{};
   for (int k = 0; k < groups; ++k, group += floats_per_group) {
     const V16 dx = p[0] - load(group), dy = p[1] - load(group + 16), dz = p[2] - load(group + 32);
     const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz);
@@ -77,17 +77,17 @@ inline void add_full_sums(const float* group, int groups, int exponent, const fl
     a[7] += k2 * dz;
     a[8] += w2;
     a[9] += k4;
-    b[0] += kx * dx;
-    b[1] += ky * dy;
-    b[2] += kz * dz;
-    b[3] += kx * dy;
-    b[4] += kx * dz;
-    b[5] += ky * dz;
-    nearest = larger(nearest, inv);
+    a[10] += kx * dx;
+    a[11] += ky * dy;
+    a[12] += kz * dz;
+    a[13] += kx * dy;
+    a[14] += kx * dz;
+    a[15] += ky * dz;
+    closest = larger(closest, inv);
   }
-  float s[16], t[16];
+  nearest = larger(nearest, closest);
+  float s[16];
   sum_lanes(a, s);
-  sum_lanes(b, t);
   const float m = static_cast<float>(Exponent > 0 ? Exponent : exponent);
   out.f += s[0];
   out.second += s[8];
@@ -95,8 +95,8 @@ inline void add_full_sums(const float* group, int groups, int exponent, const fl
   for (int i = 0; i < 3; ++i) {
     out.df[i] -= m * s[1 + i];
     out.g[i] -= m * s[5 + i];
-    out.h[i] += m * (m + 2) * t[i] - m * s[4];
-    out.h[3 + i] += m * (m + 2) * t[3 + i];
+    out.h[i] += m * (m + 2) * s[10 + i] - m * s[4];
+    out.h[3 + i] += m * (m + 2) * s[13 + i];
   }
 }
 
