@@ -14,15 +14,18 @@ struct Probe {
 };
 
 // Twelve sums at a time over sources in lanes, one register of lanes after the other, so that accumulators stay in
-// registers: add(group, nearest, a) adds the sources in the first of the lanes. `nearest` becomes the largest 1 / d^2.
+// registers: add(group, nearest, a) adds the sources in the first of the lanes, and raises `nearest`.
 template <int Twelves, class Add>
 inline void sum_in_registers(const float* group, V16& nearest, V16 (&sums)[Twelves], const Add& add) {
   Native a[natives][12 * Twelves], close[natives];
   split(nearest, close);
   for (int part = 0; part < natives; ++part) {
-    Native of_part[12 * Twelves] = {};
+    Native of_part[12 * Twelves];
+#pragma GCC unroll 24
+    for (int i = 0; i < 12 * Twelves; ++i) of_part[i] = Native{};
     add(group + part * native_lanes, close[part], of_part);
-    __builtin_memcpy(a[part], of_part, sizeof of_part);
+#pragma GCC unroll 24
+    for (int i = 0; i < 12 * Twelves; ++i) a[part][i] = of_part[i];
   }
   nearest = joined(close);
   for (int k = 0; k < Twelves; ++k) {
