@@ -1,7 +1,8 @@
 // The inner loops of tracing: field sums over the sources of one block, and the first root along a ray.
 //
 // Compiled once for each instruction set (block_kernels_<set>.cpp); all give the same bits, because every
-// sum has 16 lanes whatever the hardware, is reduced in one fixed order, and uses only + - * / and sqrt.
+// sum has 16 lanes whatever the hardware, is reduced in one fixed order, and uses only + - * / and sqrt. Packets have a
+// ray in each lane of a register, 16, 8 or 4: their bits do not depend on how many go together.
 //
 // Everything is in block coordinates: x = (p - centre) / half. In them f and grad_S f keep their values.
 #pragma once
@@ -282,11 +283,10 @@ struct BlockKernels {
   };
   /// The first t in [t0, t1] where the corrected field reaches 1.
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
-  /// first_root() for each asked ray that comes into a cell, where skeletons have no angle each, to the same bits. Null
-  /// where the instruction set has no good vectors of sixteen.
+  /// first_root() for each asked ray that comes into a cell, where skeletons have no angle each, to the same bits.
   void (*roots_in_cell)(const BlockView&, const CellPlace&, const PacketView&, std::uint64_t asked, bool any,
                         PacketMemory&, CellRoots&);
-  /// The same of rays that are known to come through the cell, from `enter` to `exit`. Null with the other one.
+  /// The same of rays that are known to come through the cell, from `enter` to `exit`.
   void (*roots_between)(const BlockView&, const CellPlace&, const PacketView&, std::uint64_t asked, bool any,
                         PacketMemory&, CellRoots&);
   PointField (*point_field)(const FieldLevel&, int degree, const float point[3]);

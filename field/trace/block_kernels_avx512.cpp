@@ -7,6 +7,8 @@ namespace marrow::avx512 {
 namespace {
 // In this order: each builds on those before.
 // clang-format off
+#include "field/trace/kernels/native.h"
+#include "field/trace/kernels/sixteen.h"
 #include "field/trace/kernels/lanes.h"
 #include "field/trace/kernels/per_ray.h"
 #include "field/trace/kernels/sums.h"

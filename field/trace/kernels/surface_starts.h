@@ -2,9 +2,15 @@
 // block_kernels_<set>.cpp.
 
 inline float lanes_at(const float* from, float) { return *from; }
-inline V16 lanes_at(const float* from, V16) { return load(from); }
+inline PacketFloat lanes_at(const float* from, PacketFloat) { return load_native(from); }
 inline void store_lanes(float v, float* to) { *to = v; }
-inline void store_lanes(V16 v, float* to) { __builtin_memcpy(to, &v, sizeof v); }
+inline void store_lanes(PacketFloat v, float* to) { __builtin_memcpy(to, &v, sizeof v); }
+
+// Whether each lane is one of the first `count`.
+inline bool first_of(int count, float) { return count > 0; }
+inline PacketInt first_of(int count, PacketFloat) {
+  return mask_of(count < packet_lanes ? (1U << count) - 1 : all_lane_bits);
+}
 
 template <class F>
 inline F dot3(const F (&a)[3], const F (&b)[3]) {
@@ -19,7 +25,8 @@ class SurfaceStart {
   using Mask = MaskOf<F>;
 
  public:
-  SurfaceStart(const SurfaceRule& rule, const SurfaceLanes& hits, int first) : rule_(rule), hits_(hits), first_(first) {
+  SurfaceStart(const SurfaceRule& rule, const SurfaceLanes& hits, int first, int count)
+      : rule_(rule), hits_(hits), first_(first), known_(first_of(count, F{})) {
     load3(hits.gradient, gradient_);
     load3(hits.si_gradient, g_);
     for (int i = 0; i < 6; ++i) h_[i] = from(hits.hessian[i]);
@@ -62,7 +69,7 @@ class SurfaceStart {
     slope_ = dot3(gradient_, normal);
     if constexpr (Varied) share_slope_ = share_along(normal);
     F best{}, largest = all_lanes<F>(-infinity);
-    Mask open = largest < 0.0F;
+    Mask open = known_;
     for (float share = shortest; share < 0.1F && any(open); share *= 2) {
       const F step = share * nearest_, found = margin(step);
       const Mask better = open & (found > largest);
@@ -141,13 +148,14 @@ class SurfaceStart {
   const SurfaceRule& rule_;
   const SurfaceLanes& hits_;
   const int first_;
+  const Mask known_;
   F f_, gradient_[3], g_[3], h_[6], nearest_, bend_, g_bend_, f_error_, g_error_, raise_;
   F bent_[3]{}, slope_{}, share_slope_{};
 };
 
 template <bool Varied, class F>
-inline void find_starts(const SurfaceRule& rule, int first, SurfaceLanes& hits) {
-  SurfaceStart<Varied, F> start(rule, hits, first);
+inline void find_starts(const SurfaceRule& rule, int first, int count, SurfaceLanes& hits) {
+  SurfaceStart<Varied, F> start(rule, hits, first, count);
   F growth[3], normal[3];
   start.find_growth(growth);
   const F largest = max_of(max_of(abs_of(growth[0]), abs_of(growth[1])), max_of(abs_of(growth[2]), 1e-30F));
@@ -162,11 +170,11 @@ inline void find_starts(const SurfaceRule& rule, int first, SurfaceLanes& hits) 
 
 template <bool Varied>
 inline void find_starts(const SurfaceRule& rule, int count, SurfaceLanes& hits) {
-#if defined(__AVX512F__)
-  constexpr int worth_lanes = 3;
-  if (count >= worth_lanes) return find_starts<Varied, V16>(rule, 0, hits);
-#endif
-  for (int i = 0; i < count; ++i) find_starts<Varied, float>(rule, i, hits);
+  constexpr int worth_a_register = 3;
+  int first = 0;
+  for (; count - first >= worth_a_register; first += packet_lanes)
+    find_starts<Varied, PacketFloat>(rule, first, count - first, hits);
+  for (; first < count; ++first) find_starts<Varied, float>(rule, first, 1, hits);
 }
 
 void surface_starts(const SurfaceRule& rule, int count, SurfaceLanes& hits) {
