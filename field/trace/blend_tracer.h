@@ -77,7 +77,13 @@ struct CellLog {
   }
 };
 
-/// What the rays of a packet met in a part, lane by lane; `hit.block` is null where nothing was met.
+/// Rays of a packet that come to one part; the lowest bit is that of lane 0.
+struct PartRays {
+  TracePart part;
+  LaneSet rays;
+};
+
+/// What the rays of a packet met in their parts, lane by lane; `hit.block` is null where nothing was met.
 struct CellHits {
   std::array<CellHit, RayPacket::size> hit{};
   std::array<CellLog, RayPacket::size> log{};
@@ -124,8 +130,8 @@ class BlendTracer {
   std::optional<CellHit> first_hit(const TracePart&, const Ray&, bool any, CellLog&) const;
   /// Whether rays are traced sooner together than one by one.
   bool traces_packets() const;
-  /// The same for the rays of a set, the lowest bit that of lane 0, to the same bits.
-  void first_hits(const TracePart&, const RayPacket&, LaneSet rays, bool any, CellHits&) const;
+  /// The same for rays of a packet, each in its part, to the same bits. No ray is in two parts.
+  void first_hits(std::span<const PartRays>, const RayPacket&, bool any, CellHits&) const;
   /// first_hit() in a tile, for the rays of a set.
   void first_hits(std::size_t tile, const RayPacket&, LaneSet rays, bool any, CellHits&) const;
   /// Normal and starting point at a hit in this tile.
@@ -149,7 +155,8 @@ class BlendTracer {
   std::optional<Stretch> enter(const TracePart&, const Ray&, bool any, CellLog&) const;
   LaneSet hits_in(const std::array<CellStep, RayPacket::size>&, LaneSet rays, const RayPacket&, bool any,
                   CellHits&) const;
-  void first_hits_in_cell(const TracePart&, const Block&, const RayPacket&, LaneSet rays, bool any, CellHits&) const;
+  class CellGroup;
+  const Block* block_for_packets(const TracePart&) const;
   void add_parts(std::size_t tile, const Tile& within, std::vector<TracePart>&) const;
   const Block& block(const Tile&, int slot) const;
   std::unique_ptr<State> state_;

@@ -117,7 +117,7 @@ struct TileLayers {
 
 /// What the search of a packet needs beside the stack, which may be small: one for each thread.
 struct PacketMemory {
-  static constexpr std::size_t of_search = 96 << 10, of_rays = 32 << 10;
+  static constexpr std::size_t of_search = 96 << 10, of_rays = 40 << 10;
   alignas(64) unsigned char search[of_search];
   alignas(64) unsigned char rays[of_rays];
 };
@@ -129,10 +129,16 @@ struct CellPlace {
   double box_lower[3], box_upper[3];
   TileLayers tiles[most_tiles];
   int tile_count;
-  double block_center[3], block_half;
 };
 
-/// Of each ray of a packet in a cell; in the sets of rays the lowest bit is that of lane 0.
+/// The rays of a packet that are in one cell, and its block. Cells of a packet are of one blend.
+struct CellRays {
+  const BlockView* block;
+  double center[3], half;
+  std::uint64_t rays;
+};
+
+/// Of each ray of a packet in its cell; in the sets of rays the lowest bit is that of lane 0.
 struct CellRoots {
   alignas(64) double outside_from[packet_size];  ///< as in CellLog; in and out
   alignas(64) double enter[packet_size];         ///< where it comes into the cell, and leaves it
@@ -283,12 +289,11 @@ struct BlockKernels {
   };
   /// The first t in [t0, t1] where the corrected field reaches 1.
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
-  /// first_root() for each asked ray that comes into a cell, where skeletons have no angle each, to the same bits.
-  void (*roots_in_cell)(const BlockView&, const CellPlace&, const PacketView&, std::uint64_t asked, bool any,
-                        PacketMemory&, CellRoots&);
-  /// The same of rays that are known to come through the cell, from `enter` to `exit`.
-  void (*roots_between)(const BlockView&, const CellPlace&, const PacketView&, std::uint64_t asked, bool any,
-                        PacketMemory&, CellRoots&);
+  /// Where rays are in a cell, if they come into it: their `enter` and `exit`. Returns those that do.
+  std::uint64_t (*enter_cell)(const CellPlace&, const PacketView&, std::uint64_t asked, bool any, CellRoots&);
+  /// first_root() for each ray in its cell, from `enter` to `exit`, where skeletons have no angle each, to the same
+  /// bits. Where directions give the angle there must be one cell alone.
+  void (*roots_between)(const CellRays* cells, int count, const PacketView&, bool any, PacketMemory&, CellRoots&);
   PointField (*point_field)(const FieldLevel&, int degree, const float point[3]);
   /// Of the first `count` lanes.
   void (*surface_starts)(const SurfaceRule&, int count, SurfaceLanes&);

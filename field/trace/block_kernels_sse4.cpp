@@ -12,6 +12,7 @@ namespace {
 #include "field/trace/kernels/lanes.h"
 #include "field/trace/kernels/per_ray.h"
 #include "field/trace/kernels/sums.h"
+#include "field/trace/kernels/levels.h"
 #include "field/trace/kernels/far_on_ray.h"
 #include "field/trace/kernels/iso.h"
 #include "field/trace/kernels/strands.h"
@@ -38,7 +39,7 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root,    roots_in_cell,  roots_between, point_field, surface_starts,
+  static constexpr BlockKernels kernels{first_root,    enter_cell,     roots_between, point_field, surface_starts,
                                         walk,          cube_bounds,    far_moments,   far_split,   octant_bounds,
                                         strand_shares, strand_samples, add_strand};
   return kernels;

@@ -47,12 +47,7 @@ TileLayers layers_in(const Tile& tile, int slot) {
 
 int tiles_above(const Tile& tile) { return tile.place().parent == nullptr ? 0 : 1 + tiles_above(*tile.place().parent); }
 
-void set_block(CellPlace& place, const Block& block) {
-  for (std::size_t k = 0; k < 3; ++k) place.block_center[k] = block.center()[k];
-  place.block_half = block.half();
-}
-
-CellPlace place_of(const TracePart& part, const Block& block) {
+CellPlace place_of(const TracePart& part) {
   CellPlace place;
   const Tile* tile = part.within;
   int slot = part.slot;
@@ -67,7 +62,6 @@ CellPlace place_of(const TracePart& part, const Block& block) {
     place.box_lower[k] = tile->content_box().lower[k];
     place.box_upper[k] = tile->content_box().upper[k];
   }
-  set_block(place, block);
   return place;
 }
 
@@ -79,43 +73,96 @@ void add_to(CellLog& log, const CellRoots& roots, std::size_t lane) {
 
 }  // namespace
 
+// Rays of a packet that are to be searched together, each in its cell.
+class BlendTracer::CellGroup {
+ public:
+  CellGroup(const BlendTracer& tracer, const RayPacket& packet, bool any)
+      : kernels_(tracer.state_->kernels),
+        most_(tracer.state_->strands ? 1 : RayPacket::size),
+        rays_(view_of(packet)),
+        any_(any) {}
+
+  CellRoots roots;  // in: outside_from of all rays; enter and exit of those that join()
+
+  // Those of the rays that come into the cell join. `key`: to know it by.
+  void enter(const TracePart& part, const Block& block, std::size_t key, LaneSet rays) {
+    join(block, key, kernels_.enter_cell(place_of(part), rays_, rays, any_, roots));
+  }
+  void join(const Block& block, std::size_t key, LaneSet rays) {
+    if (rays == 0) return;
+    cells_[count_] = {&block.view(), {block.center().x, block.center().y, block.center().z}, block.half(), rays};
+    members_[count_++] = {&block, key};
+  }
+  // No other cell may join before the search.
+  bool is_full() const { return count_ == most_; }
+
+  // Calls found(block, key, rays) for each cell: `roots` are of them. Then nobody is left.
+  template <class Found>
+  void search(const Found& found) {
+    if (count_ == 0) return;
+    kernels_.roots_between(cells_.data(), static_cast<int>(count_), rays_, any_, memory().search, roots);
+    for (std::size_t i = 0; i < count_; ++i) found(*members_[i].block, members_[i].key, cells_[i].rays);
+    count_ = 0;
+  }
+
+ private:
+  struct Member {
+    const Block* block;
+    std::size_t key;
+  };
+  const BlockKernels& kernels_;
+  const std::size_t most_;  // cells
+  const PacketView rays_;
+  const bool any_;
+  std::array<CellRays, RayPacket::size> cells_;
+  std::array<Member, RayPacket::size> members_;
+  std::size_t count_ = 0;
+};
+
 bool BlendTracer::traces_packets() const { return !state_->range || state_->strands; }
 
-void BlendTracer::first_hits(const TracePart& part, const RayPacket& packet, LaneSet rays, bool any,
-                             CellHits& out) const {
-  if (part.within == nullptr) return first_hits(part.tile, packet, rays, any, out);
-  if (traces_packets() && part.within->content().is_cell(part.slot) &&
-      tiles_above(*part.within) < CellPlace::most_tiles) {
-    const Block& b = block(*part.within, part.slot);
-    if (!b.empty()) return first_hits_in_cell(part, b, packet, rays, any, out);
+// Null where rays have to be traced one by one.
+const Block* BlendTracer::block_for_packets(const TracePart& part) const {
+  if (!traces_packets() || !part.within->content().is_cell(part.slot) ||
+      tiles_above(*part.within) >= CellPlace::most_tiles)
+    return nullptr;
+  const Block& b = block(*part.within, part.slot);
+  return b.empty() ? nullptr : &b;
+}
+
+void BlendTracer::first_hits(std::span<const PartRays> parts, const RayPacket& packet, bool any, CellHits& out) const {
+  CellGroup group(*this, packet, any);
+  const auto alone = [&](const TracePart& part, std::size_t i) {
+    out.hit[i] = first_hit(part, packet.ray(i), any, out.log[i]).value_or(CellHit{});
+  };
+  const auto take = [&](const Block& block, std::size_t part, LaneSet rays) {
+    for_each_lane(rays, [&](std::size_t i) {
+      const CellRoots& roots = group.roots;
+      if (roots.enters_inside >> i & 1) return alone(parts[part].part, i);  // it may begin inside
+      out.log[i].enter = roots.enter[i];
+      add_to(out.log[i], roots, i);
+      out.log[i].outside_from = roots.outside_from[i];
+      if (roots.hit >> i & 1) out.hit[i] = {roots.t[i], &block};
+    });
+  };
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const auto& [part, rays] = parts[k];
+    const Block* block = part.within == nullptr ? nullptr : block_for_packets(part);
+    if (part.within == nullptr) first_hits(part.tile, packet, rays, any, out);
+    else if (block == nullptr) for_each_lane(rays, [&](std::size_t i) { alone(part, i); });
+    if (block == nullptr) continue;
+    for_each_lane(rays, [&](std::size_t i) {
+      group.roots.outside_from[i] = out.log[i].outside_from;
+      out.hit[i] = {};
+      out.log[i].side = CellLog::Side::Unknown;
+    });
+    group.enter(part, *block, k, rays);
+    if (group.is_full()) group.search(take);
   }
-  for_each_lane(
-      rays, [&](std::size_t i) { out.hit[i] = first_hit(part, packet.ray(i), any, out.log[i]).value_or(CellHit{}); });
+  group.search(take);
 }
 
-void BlendTracer::first_hits_in_cell(const TracePart& part, const Block& b, const RayPacket& packet, LaneSet rays,
-                                     bool any, CellHits& out) const {
-  CellRoots roots;
-  for_each_lane(rays, [&](std::size_t i) { roots.outside_from[i] = out.log[i].outside_from; });
-  state_->kernels.roots_in_cell(b.view(), place_of(part, b), view_of(packet), rays, any, memory().search, roots);
-  for_each_lane(rays, [&](std::size_t i) {
-    CellLog& log = out.log[i];
-    out.hit[i] = {};
-    log.side = CellLog::Side::Unknown;
-    if (!(roots.entered >> i & 1)) return;
-    if (roots.enters_inside >> i & 1) {  // it may begin inside: that is asked one by one
-      out.hit[i] = first_hit(part, packet.ray(i), any, log).value_or(CellHit{});
-      return;
-    }
-    log.enter = roots.enter[i];
-    add_to(log, roots, i);
-    log.outside_from = roots.outside_from[i];
-    if (roots.hit >> i & 1) out.hit[i] = {roots.t[i], &b};
-  });
-}
-
-// Each ray goes from cell to cell as it would alone. Those that wait at the cell that any of them comes to first are
-// traced together.
+// Each ray goes from cell to cell as it would alone, all of them at the same time.
 void BlendTracer::first_hits(std::size_t tile, const RayPacket& packet, LaneSet rays, bool any, CellHits& out) const {
   if (!traces_packets()) {
     for_each_lane(
@@ -138,32 +185,15 @@ void BlendTracer::first_hits(std::size_t tile, const RayPacket& packet, LaneSet 
     go_on(i);
   });
   while (open != 0) {
-    std::size_t first = 0;
-    double nearest = infinity;
-    for_each_lane(open, [&](std::size_t i) {
-      if (!(steps[i].enter < nearest)) return;
-      nearest = steps[i].enter;
-      first = i;
-    });
-    LaneSet together = 0;
-    for_each_lane(open,
-                  [&](std::size_t i) { together |= static_cast<LaneSet>(steps[i].is_cell_of(steps[first])) << i; });
-    const LaneSet hit = hits_in(steps, together, packet, any, out);
-    open &= ~hit;
-    for_each_lane(together & ~hit, go_on);
+    open &= ~hits_in(steps, open, packet, any, out);
+    for_each_lane(open, go_on);
   }
 }
 
-// Returns which rays meet the surface in the cell.
+// Returns which rays meet the surface in the cells where they are.
 LaneSet BlendTracer::hits_in(const CellSteps& steps, LaneSet rays, const RayPacket& packet, bool any,
                              CellHits& out) const {
-  const CellStep& cell = steps[static_cast<std::size_t>(std::countr_zero(rays))];
-  const Block& b = block(*cell.tile, cell.slot);
-  if (b.empty()) {
-    cell.tile->note_empty(cell.slot);
-    return 0;
-  }
-  LaneSet hit = 0;
+  LaneSet hit = 0, together = 0;
   const auto alone = [&](std::size_t i) {
     const CellStep& step = steps[i];
     const auto found = hit_in(*step.tile, step.slot, packet.ray(i), any, step.enter, step.exit, out.log[i]);
@@ -171,33 +201,35 @@ LaneSet BlendTracer::hits_in(const CellSteps& steps, LaneSet rays, const RayPack
     hit |= lane_bit(i);
     if (found->t <= packet.t_max[i]) out.hit[i] = *found;
   };
-  // Those that go together, in the first lanes of a packet of their own.
-  RayPacket close;
-  CellRoots roots;
-  std::array<std::size_t, RayPacket::size> lane_of;
-  std::size_t count = 0;
+  CellGroup group(*this, packet, any);
   for_each_lane(rays, [&](std::size_t i) {
     if (out.log[i].side == CellLog::Side::Inside || std::has_single_bit(rays)) return alone(i);
-    close.set(count, packet.ray(i));
-    roots.enter[count] = steps[i].enter;
-    roots.exit[count] = steps[i].exit;
-    roots.outside_from[count] = out.log[i].side == CellLog::Side::Outside ? -infinity : infinity;
-    lane_of[count++] = i;
+    group.roots.enter[i] = steps[i].enter;
+    group.roots.exit[i] = steps[i].exit;
+    group.roots.outside_from[i] = out.log[i].side == CellLog::Side::Outside ? -infinity : infinity;
+    together |= lane_bit(i);
   });
-  CellPlace place;
-  set_block(place, b);
-  state_->kernels.roots_between(b.view(), place, view_of(close), first_lanes(count), any, memory().search, roots);
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t i = lane_of[k];
-    if (roots.enters_inside >> k & 1) {
-      alone(i);
-      continue;
-    }
-    add_to(out.log[i], roots, k);
-    if (!(roots.met >> k & 1)) continue;
-    hit |= lane_bit(i);
-    if (roots.hit >> k & 1) out.hit[i] = {roots.t[k], &b};
+  const auto take = [&](const Block& block, std::size_t, LaneSet in_block) {
+    for_each_lane(in_block, [&](std::size_t i) {
+      const CellRoots& roots = group.roots;
+      if (roots.enters_inside >> i & 1) return alone(i);
+      add_to(out.log[i], roots, i);
+      if (!(roots.met >> i & 1)) return;
+      hit |= lane_bit(i);
+      if (roots.hit >> i & 1) out.hit[i] = {roots.t[i], &block};
+    });
+  };
+  while (together != 0) {
+    const CellStep& cell = steps[static_cast<std::size_t>(std::countr_zero(together))];
+    LaneSet here = 0;
+    for_each_lane(together, [&](std::size_t i) { here |= static_cast<LaneSet>(steps[i].is_cell_of(cell)) << i; });
+    together &= ~here;
+    const Block& b = block(*cell.tile, cell.slot);
+    if (b.empty()) cell.tile->note_empty(cell.slot);
+    else group.join(b, 0, here);
+    if (group.is_full()) group.search(take);
   }
+  group.search(take);
   return hit;
 }
 

@@ -96,12 +96,19 @@ std::optional<double> FieldSolid::hit_in_part(const SolidPart& part, const Ray& 
   return traced(TracePart{part.element, static_cast<const Tile*>(part.within), part.slot}, ray, any, log);
 }
 
-void FieldSolid::hits_in_part(const SolidPart& part, const RayPacket& packet, LaneSet lanes, bool any,
-                              PacketLog& log) const {
+void FieldSolid::hits_in_parts(std::span<const LanesInPart> parts, const RayPacket& packet, bool any,
+                               PacketLog& log) const {
+  std::array<PartRays, RayPacket::size> places;
+  LaneSet lanes = 0;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const SolidPart& part = *parts[k].part;
+    places[k] = {{part.element, static_cast<const Tile*>(part.within), part.slot}, parts[k].lanes};
+    lanes |= parts[k].lanes;
+  }
   std::array<double, RayPacket::size> stretch;
-  stretch.fill(1);
   RayPacket moved;
-  if (!in_world_)
+  if (in_world_) stretch.fill(1);
+  else
     for_each_lane(lanes, [&](std::size_t i) {
       const LocalRay local = to_local(packet.ray(i));
       moved.set(i, local.ray);
@@ -110,20 +117,21 @@ void FieldSolid::hits_in_part(const SolidPart& part, const RayPacket& packet, La
   CellHits cells;
   std::array<std::size_t, RayPacket::size> before;
   for_each_lane(lanes, [&](std::size_t i) {
+    cells.log[i] = {};
     cells.log[i].outside_from = log.lanes[i].outside_from * stretch[i];
     cells.log[i].visits = log.lanes[i].visits;
     before[i] = visits_so_far(log.lanes[i]);
   });
-  const TracePart place{part.element, static_cast<const Tile*>(part.within), part.slot};
-  tracer_->first_hits(place, in_world_ ? packet : moved, lanes, any, cells);
-  for_each_lane(lanes, [&](std::size_t i) {
-    to_world(cells.log[i], stretch[i], before[i], log.lanes[i]);
-    if (part.within == nullptr) log.lanes[i].begins_inside = false;  // as of an element in hit()
-    log.lanes[i].place = cells.hit[i].block;
-    const double t = std::max(packet.t_min[i], cells.hit[i].t / stretch[i]);
-    const bool met = cells.hit[i].block != nullptr && (any || t <= packet.t_max[i]);
-    log.t[i] = met ? t : std::numeric_limits<double>::infinity();
-  });
+  tracer_->first_hits(std::span(places).first(parts.size()), in_world_ ? packet : moved, any, cells);
+  for (const auto& [part, in_part] : parts)
+    for_each_lane(in_part, [&](std::size_t i) {
+      to_world(cells.log[i], stretch[i], before[i], log.lanes[i]);
+      if (part->within == nullptr) log.lanes[i].begins_inside = false;  // as of an element in hit()
+      log.lanes[i].place = cells.hit[i].block;
+      const double t = std::max(packet.t_min[i], cells.hit[i].t / stretch[i]);
+      const bool met = cells.hit[i].block != nullptr && (any || t <= packet.t_max[i]);
+      log.t[i] = met ? t : std::numeric_limits<double>::infinity();
+    });
 }
 
 std::vector<SolidPart> FieldSolid::parts() const {

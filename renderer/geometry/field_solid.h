@@ -23,7 +23,7 @@ class FieldSolid final : public Solid {
   std::vector<SolidPart> parts() const override;
   std::optional<double> hit_in_part(const SolidPart&, const Ray&, bool any, ElementLog&) const override;
   bool traces_packets() const override { return tracer_->traces_packets(); }
-  void hits_in_part(const SolidPart&, const RayPacket&, LaneSet lanes, bool any, PacketLog&) const override;
+  void hits_in_parts(std::span<const LanesInPart>, const RayPacket&, bool any, PacketLog&) const override;
   void describe(std::span<const HitToDescribe>) const override;
   std::size_t primitive_count() const override { return tracer_->field().size(); }
   std::size_t bytes() const override { return tracer_->statistics().bytes; }

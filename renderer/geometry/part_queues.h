@@ -25,9 +25,12 @@ class PartQueues {
     first_[part] = ray;
   }
 
+  /// Nobody waits.
+  bool empty() const { return served_ == parts_.size(); }
+
   /// Takes all rays from the part where they have waited longest; false when none waits anywhere.
   bool next(std::uint32_t& part, std::vector<std::uint32_t>& rays) {
-    if (served_ == parts_.size()) return false;
+    if (empty()) return false;
     part = parts_[served_++];
     rays.clear();
     for (std::uint32_t ray = first_[part]; ray != nobody; ray = behind_[ray]) rays.push_back(ray);

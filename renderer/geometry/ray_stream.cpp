@@ -1,6 +1,7 @@
 #include "renderer/geometry/ray_stream.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <memory>
 
@@ -17,14 +18,25 @@ std::span<T> piece_of(std::span<T> all, std::size_t first, std::size_t most) {
   return all.subspan(first, std::min(most, all.size() - first));
 }
 
+// Rays in the lanes of a packet, each in one of some parts of a solid.
+struct RaysInLanes {
+  RayPacket packet;
+  PacketLog log;
+  std::array<StreamedRay*, RayPacket::size> rays;
+  std::vector<LanesInPart> parts;
+  std::uint32_t solid = 0;
+  std::size_t count = 0;
+
+  std::size_t room() const { return RayPacket::size - count; }
+};
+
 // What a thread keeps from stream to stream: rays on their way, and where they wait.
 struct Memory {
   std::vector<StreamedRay> rays;
   std::vector<StreamedRay*> searching;
   std::vector<std::uint32_t> together;
   PartQueues queues;
-  RayPacket packet;
-  PacketLog log;
+  RaysInLanes in_lanes;
 };
 Memory& memory() {
   thread_local const auto own = std::make_unique<Memory>();
@@ -72,35 +84,52 @@ class Stream {
   void trace_waiting() {
     std::uint32_t part = 0;
     std::vector<std::uint32_t>& together = memory_.together;
-    while (memory_.queues.next(part, together))
-      for (std::size_t i = 0; i < together.size(); i += RayPacket::size)
-        trace(piece_of(std::span(together), i, RayPacket::size));
+    do {
+      while (memory_.queues.next(part, together)) seat_all(together);
+      trace();
+    } while (!memory_.queues.empty());
   }
 
   // Rays that wait at the same part.
-  void trace(std::span<const std::uint32_t> together) {
-    const PartEntry at = *memory_.rays[together[0]].ahead.next();
-    const PartsOfSolid& of = hierarchy_.solid(at.solid);
-    if (together.size() == 1) {
-      StreamedRay& ray = memory_.rays[together[0]];
-      ElementLog log = ray.visit.before(*of.solid);
-      const auto t = of.solid->hit_in_part(of.parts[at.part], ray.visit.ray, any_, log);
-      take(ray, at, t.value_or(std::numeric_limits<double>::infinity()), log);
-      return;
+  void seat_all(std::span<const std::uint32_t> waiting) {
+    while (!waiting.empty()) {
+      RaysInLanes& in_lanes = memory_.in_lanes;
+      if (in_lanes.room() == 0 || next_part(waiting[0]).solid != in_lanes.solid) trace();
+      const auto some = waiting.first(std::min(waiting.size(), in_lanes.room()));
+      seat(some, in_lanes);
+      waiting = waiting.subspan(some.size());
     }
-    RayPacket& packet = memory_.packet;
-    PacketLog& log = memory_.log;
-    for (std::size_t lane = 0; lane < together.size(); ++lane) {
-      const PartVisit& visit = memory_.rays[together[lane]].visit;
-      packet.set(lane, visit.ray);
-      log.lanes[lane] = visit.before(*of.solid);
-    }
-    of.solid->hits_in_part(of.parts[at.part], packet, first_lanes(together.size()), any_, log);
-    for (std::size_t lane = 0; lane < together.size(); ++lane)
-      take(memory_.rays[together[lane]], at, log.t[lane], log.lanes[lane]);
   }
 
-  void take(StreamedRay& ray, const PartEntry& at, double t, const ElementLog& log) {
+  PartEntry next_part(std::uint32_t ray) const { return *memory_.rays[ray].ahead.next(); }
+
+  // No more than there is room for.
+  void seat(std::span<const std::uint32_t> together, RaysInLanes& in_lanes) {
+    const PartEntry at = next_part(together[0]);
+    const PartsOfSolid& of = hierarchy_.solid(at.solid);
+    in_lanes.solid = at.solid;
+    in_lanes.parts.push_back({&of.parts[at.part], first_lanes(together.size()) << in_lanes.count});
+    for (const std::uint32_t i : together) {
+      StreamedRay& ray = memory_.rays[i];
+      in_lanes.rays[in_lanes.count] = &ray;
+      in_lanes.packet.set(in_lanes.count, ray.visit.ray);
+      in_lanes.log.lanes[in_lanes.count++] = ray.visit.before(*of.solid);
+    }
+  }
+
+  void trace() {
+    RaysInLanes& in_lanes = memory_.in_lanes;
+    if (in_lanes.count == 0) return;
+    hierarchy_.solid(in_lanes.solid).solid->hits_in_parts(in_lanes.parts, in_lanes.packet, any_, in_lanes.log);
+    for (std::size_t lane = 0; lane < in_lanes.count; ++lane) {
+      StreamedRay& ray = *in_lanes.rays[lane];
+      take(ray, *ray.ahead.next(), in_lanes.log.t[lane], in_lanes.log.lanes[lane]);
+    }
+    in_lanes.parts.clear();
+    in_lanes.count = 0;
+  }
+
+  void take(StreamedRay& ray, PartEntry at, double t, const ElementLog& log) {
     const PartsOfSolid& of = hierarchy_.solid(at.solid);
     ray.ahead.take();
     ray.take(at.solid, *of.solid, of.parts[at.part], t, log, any_);

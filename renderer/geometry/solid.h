@@ -42,6 +42,12 @@ struct SolidPart {
   int slot = 0;
 };
 
+/// Rays of a packet that come to one part.
+struct LanesInPart {
+  const SolidPart* part;
+  LaneSet lanes;
+};
+
 /// A hit of which not all is known yet; `place` as Solid::hit() told it.
 struct HitToDescribe {
   std::size_t element;
@@ -69,8 +75,8 @@ class Solid {
   }
   /// Whether rays are traced sooner together than one by one.
   virtual bool traces_packets() const { return false; }
-  /// hit_in_part() for the rays of `lanes`, to the same bits; `log` is of these lanes only.
-  virtual void hits_in_part(const SolidPart&, const RayPacket&, LaneSet lanes, bool any, PacketLog& log) const;
+  /// hit_in_part() for rays of a packet, each in one of the parts, to the same bits; `log` is of these lanes only.
+  virtual void hits_in_parts(std::span<const LanesInPart>, const RayPacket&, bool any, PacketLog& log) const;
   /// Fills normal, outside and material of hits whose positions are known.
   virtual void describe(std::span<const HitToDescribe>) const = 0;
   virtual std::size_t primitive_count() const = 0;
@@ -83,12 +89,13 @@ inline std::vector<SolidPart> Solid::parts() const {
   return parts;
 }
 
-inline void Solid::hits_in_part(const SolidPart& part, const RayPacket& packet, LaneSet lanes, bool any,
-                                PacketLog& log) const {
-  for_each_lane(lanes, [&](std::size_t lane) {
-    const auto t = hit_in_part(part, packet.ray(lane), any, log.lanes[lane]);
-    log.t[lane] = t.value_or(std::numeric_limits<double>::infinity());
-  });
+inline void Solid::hits_in_parts(std::span<const LanesInPart> parts, const RayPacket& packet, bool any,
+                                 PacketLog& log) const {
+  for (const auto& [part, lanes] : parts)
+    for_each_lane(lanes, [&](std::size_t lane) {
+      const auto t = hit_in_part(*part, packet.ray(lane), any, log.lanes[lane]);
+      log.t[lane] = t.value_or(std::numeric_limits<double>::infinity());
+    });
 }
 
 }  // namespace marrow

@@ -2,6 +2,10 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -94,15 +98,40 @@ void expect_same_in_tiles(const BlendTracer& tracer, const Rays& rays, LaneSet a
   }
 }
 
+// Each ray in a part of its own, or with some others.
+void expect_same_in_mixed_parts(const BlendTracer& tracer, const Rays& rays, LaneSet asked, bool any, Random& random) {
+  const std::vector<TracePart> parts = tracer.parts();
+  if (parts.empty()) return;
+  const int last = static_cast<int>(parts.size()) - 1, some = std::min(last, random.whole(0, 20));
+  std::map<std::size_t, LaneSet> in_part;
+  std::array<std::size_t, RayPacket::size> part_of{};
+  for_each_lane(asked, [&](std::size_t i) {
+    part_of[i] = static_cast<std::size_t>(last - random.whole(0, random.whole(0, 1) == 0 ? some : last));
+    in_part[part_of[i]] |= lane_bit(i);
+  });
+  std::vector<PartRays> together;
+  for (const auto& [part, lanes] : in_part) together.push_back({parts[part], lanes});
+  CellHits found;
+  tracer.first_hits(together, RayPacket(rays), any, found);
+  for_each_lane(asked, [&](std::size_t i) {
+    CellLog log;
+    const auto expected = tracer.first_hit(parts[part_of[i]], rays[i], any, log);
+    expect_same(found, i, expected, log);
+  });
+}
+
 void expect_same(const BlendTracer& tracer, const Rays& rays, LaneSet asked, bool any, Compared& count) {
   expect_same_in_tiles(tracer, rays, asked, any);
+  Random mixing = Random::stream(static_cast<std::uint64_t>(count.rays));
+  for (int i = 0; i < 2; ++i) expect_same_in_mixed_parts(tracer, rays, asked, any, mixing);
   const RayPacket packet(rays);
   std::array<double, RayPacket::size> outside_from{};
   outside_from.fill(std::numeric_limits<double>::infinity());
   for (const TracePart& part : tracer.parts()) {
     CellHits found;
     for (std::size_t i = 0; i < rays.size(); ++i) found.log[i].outside_from = outside_from[i];
-    tracer.first_hits(part, packet, asked, any, found);
+    const PartRays all_in_part{part, asked};
+    tracer.first_hits(std::span(&all_in_part, 1), packet, any, found);
     for_each_lane(asked, [&](std::size_t i) {
       CellLog log;
       log.outside_from = outside_from[i];

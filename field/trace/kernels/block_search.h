@@ -1,7 +1,7 @@
-// A packet of rays in one block: those that need the same go together, as many at a time as
-// a register has lanes. Part of block_kernels_<set>.cpp.
+// A packet of rays, each in its block: those that need the same go together, whatever their blocks, as many at a time
+// as a register has lanes. Part of block_kernels_<set>.cpp.
 
-// The rays of a packet on their way through a block, in its coordinates.
+// The rays of a packet on their ways through their blocks, in the coordinates of these.
 struct BlockRays {
   alignas(64) float origin[3][packet_size], direction[3][packet_size];
   alignas(64) float from[packet_size], to[packet_size];
@@ -10,6 +10,7 @@ struct BlockRays {
   alignas(64) float searched_from[packet_size];              // as in Root
   alignas(64) float t[packet_size], undecided[packet_size];
   alignas(64) int evaluations[packet_size];
+  alignas(64) int cell[packet_size];
   alignas(64) float share[SharePatch::degree + 1][packet_size];  // ShareOnRun of the run, where patches give the angle
   std::uint64_t from_surface;                                    // as in QueryOf
   std::uint64_t begins_outside, enters_inside, hit;              // as in RootOf
@@ -46,25 +47,29 @@ class Lanes {
   }
 #else
   void store(PacketInt which, float* of_packet, PacketFloat v) const {
-    for_each_set(which, [&](int lane) { of_packet[at_[lane]] = v[lane]; });
+    for_each(which, [&](int lane, int ray) { of_packet[ray] = v[lane]; });
   }
   void add(PacketInt which, int* of_packet, PacketInt v) const {
-    for_each_set(which, [&](int lane) { of_packet[at_[lane]] += v[lane]; });
+    for_each(which, [&](int lane, int ray) { of_packet[ray] += v[lane]; });
   }
 #endif
   // As bits of the packet.
   std::uint64_t in_packet(PacketInt which) const {
     std::uint64_t bits = 0;
-    for_each_set(which, [&](int lane) { bits |= std::uint64_t{1} << at_[lane]; });
+    for_each(which, [&](int, int ray) { bits |= std::uint64_t{1} << ray; });
     return bits;
   }
 
- private:
+  // Calls visit(lane, ray).
   template <class Visit>
-  static void for_each_set(PacketInt which, const Visit& visit) {
-    for (unsigned left = lane_bits(which); left != 0; left &= left - 1) visit(__builtin_ctz(left));
+  void for_each(PacketInt which, const Visit& visit) const {
+    for (unsigned left = lane_bits(which); left != 0; left &= left - 1) {
+      const int lane = __builtin_ctz(left);
+      visit(lane, at_[lane]);
+    }
   }
 
+ private:
   PacketInt at_{};
   unsigned taken_ = 0;
 };
@@ -91,13 +96,17 @@ struct AngleOnRuns<Angle::Patched> {
 template <Angle Rule>
 class BlockSearch {
  public:
-  BlockSearch(const BlockView& block, bool any_root, PacketMemory& memory)
-      : block_(block), any_root_(any_root), memory_(memory) {
+  BlockSearch(const CellRays* cells, int count, bool any_root, PacketMemory& memory)
+      : cells_(cells), cell_count_(count), block_(*cells[0].block), any_root_(any_root), memory_(memory) {
     static_assert(sizeof(typename Islands<Rule, PacketFloat>::Island[Islands<Rule, PacketFloat>::most]) <=
                   PacketMemory::of_search);
-    static_assert(sizeof(BlockRays) + sizeof(Runs<Rule, PacketFloat>[groups]) <= PacketMemory::of_rays);
+    static_assert(sizeof(BlockRays) + sizeof(Own) <= PacketMemory::of_rays);
     rays_ = reinterpret_cast<BlockRays*>(memory.rays);
-    runs_ = reinterpret_cast<Runs<Rule, PacketFloat>*>(memory.rays + sizeof(BlockRays));
+    own_ = reinterpret_cast<Own*>(memory.rays + sizeof(BlockRays));
+    for (int i = 0; i < count; ++i) {
+      own_->slots[i].known = 0;
+      own_->level[i] = nullptr;
+    }
   }
 
   // As first_root() of each of these rays.
@@ -110,12 +119,17 @@ class BlockSearch {
       const PacketInt none{};
       __builtin_memcpy(r.evaluations + first, &none, sizeof none);
     }
-    open = leave_surfaces(open);
+    open &=
+        ~in_levels<&BlockView::fine>(open & r.from_surface, [&](std::uint64_t rays) { return leave_surfaces(rays); });
     start_runs(open);
     open &= next_runs(open);
     __builtin_memcpy(r.searched_from, r.begin, sizeof r.begin);
     while (open != 0) {
-      const std::uint64_t met = decide_all(approach_all(open)) | surely_inside_;
+      surely_inside_ = 0;
+      const std::uint64_t near =
+          in_levels<&BlockView::coarse>(open, [&](std::uint64_t rays) { return approach_all(rays); });
+      const std::uint64_t met =
+          surely_inside_ | in_levels<&BlockView::fine>(near, [&](std::uint64_t rays) { return decide_all(rays); });
       r.hit |= met;
       const std::uint64_t unknown = met & ~r.begins_outside;
       if (!any_root_ && unknown != 0) find_sides(unknown);
@@ -127,6 +141,13 @@ class BlockSearch {
  private:
   static constexpr int groups = packet_size / packet_lanes;
 
+  // What is kept of the rays beside BlockRays.
+  struct Own {
+    Runs<Rule, PacketFloat> runs[groups];  // of as many rays as there are lanes
+    SlotWords slots[packet_size];          // of each cell
+    const FieldLevel* level[packet_size];  // of each cell, in which its rays are searched now
+  };
+
   static void store(PacketFloat v, float* to) { __builtin_memcpy(to, &v, sizeof v); }
   void load_rays(const Lanes& at, PacketInt which, PacketRays& rays) const {
     for (int k = 0; k < 3; ++k) {
@@ -135,34 +156,58 @@ class BlockSearch {
     }
   }
 
+  // search(rays), of as many of the rays at a time as have levels that stay good together; joins what it returns. Two
+  // cells whose levels are not kept may be given the same memory for them, the later one last.
+  template <const FieldLevel& (BlockView::*Make)() const, class Find>
+  std::uint64_t in_levels(std::uint64_t rays, const Find& search) {
+    std::uint64_t found = 0;
+    while (rays != 0) {
+      std::uint64_t ready = 0;
+      for (int i = 0; i < cell_count_; ++i) {
+        if (!(cells_[i].rays & rays)) continue;
+        own_->level[i] = &(cells_[i].block->*Make)();
+        for (int k = 0; k < i; ++k)
+          if (own_->level[k] == own_->level[i]) ready &= ~cells_[k].rays;
+        ready |= cells_[i].rays & rays;
+      }
+      found |= search(ready);
+      rays &= ~ready;
+    }
+    return found;
+  }
+
+  const FieldLevel& level_of(int ray) const { return *own_->level[rays_->cell[ray]]; }
+  const FieldLevel& any_level(std::uint64_t rays) const { return level_of(__builtin_ctzll(rays)); }
+
   // Those that wait, in free lanes.
-  PacketInt seat(Lanes& at, std::uint64_t& waiting, PacketRays& rays, AngleOnRuns<Rule>& angle) const {
+  PacketInt seat(Lanes& at, std::uint64_t& waiting, PacketRays& rays, LevelOf<PacketFloat>& level) const {
     const PacketInt seated = at.seat(waiting);
     load_rays(at, seated, rays);
-    angle.load(at, seated, *rays_);
+    at.for_each(seated, [&](int lane, int ray) { level.set(lane, level_of(ray)); });
     return seated;
   }
 
-  // Returns the rays that are to go on.
-  std::uint64_t leave_surfaces(std::uint64_t open) {
+  // Returns the rays that end here.
+  std::uint64_t leave_surfaces(std::uint64_t leaving) {
     BlockRays& r = *rays_;
+    std::uint64_t ended = 0;
     PacketRays rays{{}, {}, &memory_};
-    for (std::uint64_t left = open & r.from_surface; left != 0;) {
+    LevelOf<PacketFloat> level(any_level(leaving));
+    while (leaving != 0) {
       Lanes at;
-      const PacketInt here = at.seat(left);
-      load_rays(at, here, rays);
+      const PacketInt here = seat(at, leaving, rays, level);
       const QueryOf<PacketFloat> query{at.load(r.from), at.load(r.to), any_root_, false, here, PacketInt{}};
       RootOf<PacketFloat> root;
       PacketFloat front = query.t0;
-      const PacketInt go_on = leave_surface<Rule>(block_, rays, query, here, root, front);
+      const PacketInt go_on = leave_surface<Rule>(block_, level, rays, query, here, root, front);
       at.store(here, r.from, front);
       at.store(here & root.hit, r.t, root.t);
       r.hit |= at.in_packet(root.hit);
       r.begins_outside |= at.in_packet(root.begins_outside);
       r.enters_inside |= at.in_packet(root.enters_inside);
-      open &= ~at.in_packet(here & !go_on);
+      ended |= at.in_packet(here & !go_on);
     }
-    return open;
+    return ended;
   }
 
   PacketRays rays_of_group(int group) const {
@@ -186,8 +231,11 @@ class BlockSearch {
     for (int i = 0; i < groups; ++i) {
       if (!(open >> (packet_lanes * i) & all_lane_bits)) continue;
       const PacketRays ray = rays_of_group(i);
-      runs_[i] = Runs<Rule, PacketFloat>(block_, ray, load_native(r.from + packet_lanes * i),
-                                         load_native(r.to + packet_lanes * i));
+      PacketInt cell;
+      __builtin_memcpy(&cell, r.cell + packet_lanes * i, sizeof cell);
+      own_->runs[i] =
+          Runs<Rule, PacketFloat>(block_, SlotBits<PacketFloat>(cells_, own_->slots, cell), ray,
+                                  load_native(r.from + packet_lanes * i), load_native(r.to + packet_lanes * i));
     }
   }
 
@@ -198,10 +246,10 @@ class BlockSearch {
       const auto of_group = static_cast<unsigned>(open >> (packet_lanes * i) & all_lane_bits);
       if (of_group == 0) continue;
       Run<PacketFloat> run{load_native(rays_->begin + packet_lanes * i), load_native(rays_->end + packet_lanes * i)};
-      found |= static_cast<std::uint64_t>(lane_bits(runs_[i].next(mask_of(of_group), run))) << (packet_lanes * i);
+      found |= static_cast<std::uint64_t>(lane_bits(own_->runs[i].next(mask_of(of_group), run))) << (packet_lanes * i);
       store(run.begin, rays_->begin + packet_lanes * i);
       store(run.end, rays_->end + packet_lanes * i);
-      if constexpr (Rule == Angle::Patched) store_shares(runs_[i], rays_of_group(i), run.begin, packet_lanes * i);
+      if constexpr (Rule == Angle::Patched) store_shares(own_->runs[i], rays_of_group(i), run.begin, packet_lanes * i);
     }
     return found;
   }
@@ -210,16 +258,17 @@ class BlockSearch {
   std::uint64_t approach_all(std::uint64_t waiting) {
     BlockRays& r = *rays_;
     std::uint64_t near = 0;
-    surely_inside_ = 0;
     PacketRays rays{{}, {}, &memory_};
+    LevelOf<PacketFloat> level(any_level(waiting));
     AngleOnRuns<Rule> angle;
-    Marcher<Rule, PacketFloat> march(block_, block_.coarse(), rays, angle.source);
+    Marcher<Rule, PacketFloat> march(block_, level, rays, angle.source);
     Search<Rule, PacketFloat> search(march, PacketFloat{}, PacketFloat{});
     Approach<Rule, PacketFloat> approach(search, any_root_);
     Lanes at;
     for (;;) {
       if (waiting != 0) {
-        const PacketInt seated = seat(at, waiting, rays, angle);
+        const PacketInt seated = seat(at, waiting, rays, level);
+        angle.load(at, seated, r);
         const PacketFloat begin = at.load(r.begin), end = at.load(r.end);
         search.restart(seated, begin, end);
         march.evaluations = select(seated, PacketInt{}, march.evaluations);
@@ -247,16 +296,17 @@ class BlockSearch {
   std::uint64_t decide_all(std::uint64_t waiting) {
     BlockRays& r = *rays_;
     std::uint64_t met = 0;
-    if (waiting == 0) return met;
     PacketRays rays{{}, {}, &memory_};
+    LevelOf<PacketFloat> level(any_level(waiting));
     AngleOnRuns<Rule> angle;
-    Marcher<Rule, PacketFloat> march(block_, block_.fine(), rays, angle.source);
+    Marcher<Rule, PacketFloat> march(block_, level, rays, angle.source);
     Search<Rule, PacketFloat> search(march, PacketFloat{}, PacketFloat{});
     Decision<Rule, PacketFloat> decision(search, PacketFloat{}, any_root_);
     Lanes at;
     for (;;) {
       if (waiting != 0) {
-        const PacketInt seated = seat(at, waiting, rays, angle);
+        const PacketInt seated = seat(at, waiting, rays, level);
+        angle.load(at, seated, r);
         search.restart(seated, at.load(r.front), at.load(r.end));
         at.load(seated, r.guess, decision.guess);
         decision.samples = select(seated, PacketInt{}, decision.samples);
@@ -291,14 +341,17 @@ class BlockSearch {
         angle.run.from = r.begin[lane];
         for (int i = 0; i <= SharePatch::degree; ++i) angle.run.way.c[i] = r.share[i][lane];
       }
-      if (is_inside<Rule>(block_, ray, r.begin[lane], angle.source)) r.enters_inside |= std::uint64_t{1} << lane;
+      const BlockView& block = *cells_[r.cell[lane]].block;
+      if (is_inside<Rule>(block, ray, r.begin[lane], angle.source)) r.enters_inside |= std::uint64_t{1} << lane;
     }
   }
 
-  const BlockView& block_;
+  const CellRays* cells_;
+  const int cell_count_;
+  const BlockView& block_;  // of the first cell
   const bool any_root_;
   PacketMemory& memory_;
   BlockRays* rays_;
-  Runs<Rule, PacketFloat>* runs_;  // of as many rays as there are lanes
+  Own* own_;
   std::uint64_t surely_inside_ = 0;
 };

@@ -99,6 +99,7 @@ inline void add_far(const FieldLevel& level, const OnRay<float> (&p)[3], RaySums
   }
 }
 
+// In lanes of one level.
 inline void add_far(const FieldLevel& level, const OnRay<PacketFloat> (&p)[3], RaySums<PacketFloat>& s) {
   const auto part = [&](int k) { return far_polynomial(level, OneOfFour{level.far + k}, p[0], p[1], p[2]); };
   const FarSlope<PacketFloat> f = part(0);
@@ -108,5 +109,32 @@ inline void add_far(const FieldLevel& level, const OnRay<PacketFloat> (&p)[3], R
     const FarSlope<PacketFloat> g = part(i + 1);
     s.g[i] += g.value;
     s.dg[i] += g.slope;
+  }
+}
+
+// Of several levels: each ray's own polynomials, as for a single ray.
+inline void add_far_of_each(const LevelOf<PacketFloat>& levels, unsigned active, const OnRay<PacketFloat> (&p)[3],
+                            RaySums<PacketFloat>& s) {
+  struct Row {
+    V4 value, slope, unused[2];
+  };
+  V16 rows[packet_lanes];
+  for (V16& row : rows) row = V16{};
+  for (unsigned left = active; left != 0; left &= left - 1) {
+    const int lane = __builtin_ctz(left);
+    const auto of_lane = [&](int k) { return OnRay<float>{p[k].at[lane], p[k].slope[lane]}; };
+    const FieldLevel& level = levels[lane];
+    const FarSlope<V4> far = far_polynomial(level, AllFour{level.far}, of_lane(0), of_lane(1), of_lane(2));
+    const Row row{far.value, far.slope, {}};
+    static_assert(sizeof row == sizeof rows[0]);
+    __builtin_memcpy(&rows[lane], &row, sizeof row);
+  }
+  PacketFloat columns[lanes];
+  find_columns(rows, columns);
+  s.f += columns[0];
+  s.df += columns[4];
+  for (int i = 0; i < 3; ++i) {
+    s.g[i] += columns[1 + i];
+    s.dg[i] += columns[5 + i];
   }
 }

@@ -46,12 +46,14 @@ template <Angle Rule>
 inline RootOf<float> root_in(const BlockView& block, const LocalRay& ray, const Run<float>& run,
                              const AngleSource<Rule, float>& angle, bool any_root) {
   RootOf<float> root;
-  Marcher<Rule> march(block, block.coarse(), ray, angle);
+  const LevelOf<float> coarse(block.coarse());
+  Marcher<Rule> march(block, coarse, ray, angle);
   Search<Rule> search(march, run.begin, run.end);
   Approach<Rule> approach(search, any_root);
   while (approach.step(true)) {}
   if (approach.near) {
-    Marcher<Rule> fine(block, block.fine(), ray, angle);
+    const LevelOf<float> exact(block.fine());
+    Marcher<Rule> fine(block, exact, ray, angle);
     Search<Rule> close(fine, search.front, run.end);
     root = decide(close, min_of(max_of(approach.guess, search.front), run.end), any_root);
     root.evaluations = fine.evaluations;
@@ -69,7 +71,8 @@ inline RootOf<float> root_in(const BlockView& block, const LocalRay& ray, const 
 template <Angle Rule>
 inline RootOf<float> exit_in(const BlockView& block, const LocalRay& ray, const Run<float>& run,
                              const AngleSource<Rule, float>& angle, bool any_root) {
-  Marcher<Rule> march(block, block.fine(), ray, angle);
+  const LevelOf<float> fine(block.fine());
+  Marcher<Rule> march(block, fine, ray, angle);
   march.exits = true;
   Search<Rule> search(march, run.begin, run.end);
   search.record(true, march.sample(run.begin, true));
@@ -86,19 +89,21 @@ inline constexpr float clearly_inside = 5e-6F;
 // Whether the ray is inside at t, by the coarse level where that can tell.
 template <Angle Rule>
 inline bool is_inside(const BlockView& block, const LocalRay& ray, float t, const AngleSource<Rule, float>& angle) {
-  Marcher<Rule> rough(block, block.coarse(), ray, angle);
+  const LevelOf<float> coarse(block.coarse());
+  Marcher<Rule> rough(block, coarse, ray, angle);
   const SampleOf<Rule> p = rough.sample(t, true);
   if (p.residual > 0) return false;
   if (p.nominal < -clearly_inside && rough.inside_at(p, 0)) return true;
-  Marcher<Rule> march(block, block.fine(), ray, angle);
+  const LevelOf<float> fine(block.fine());
+  Marcher<Rule> march(block, fine, ray, angle);
   return march.sample(t, true).nominal < -clearly_inside;
 }
 
 // A ray that begins at a surface is too near for the coarse level: one fine certificate leads away. Returns the rays
 // that are to go on from `front`; those that end here have a hit, or nothing.
 template <Angle Rule, class F>
-inline MaskOf<F> leave_surface(const BlockView& block, const RayOf<F>& ray, const QueryOf<F>& query, MaskOf<F> rays,
-                               RootOf<F>& root, F& front) {
+inline MaskOf<F> leave_surface(const BlockView& block, const LevelOf<F>& fine, const RayOf<F>& ray,
+                               const QueryOf<F>& query, MaskOf<F> rays, RootOf<F>& root, F& front) {
   using Mask = MaskOf<F>;
   Patches<F> patches;
   F end = query.t1;
@@ -110,7 +115,7 @@ inline MaskOf<F> leave_surface(const BlockView& block, const RayOf<F>& ray, cons
     end = min_of(end, max_of(query.t0, end_of_patch(patches, ray)));
   }
   const AngleOf<Rule, F> angle = angle_from<Rule>(patches, ray, query.t0);
-  Marcher<Rule, F> march(block, block.fine(), ray, angle.source);
+  Marcher<Rule, F> march(block, fine, ray, angle.source);
   Search<Rule, F> start(march, query.t0, end);
   const SampleOf<Rule, F> first = march.sample(query.t0, rays);
   const Mask inside = rays & (first.nominal < -clearly_inside), outside = rays & !inside;
@@ -128,8 +133,11 @@ inline RootOf<float> first_root_of(const BlockView& block, const LocalRay& ray, 
   RootOf<float> root;
   root.begins_outside = query.from_outside;
   float front = query.t0;
-  if (!query.leaving && query.from_surface && !leave_surface<Rule>(block, ray, query, true, root, front)) return root;
-  Runs<Rule, float> runs(block, ray, front, query.t1);
+  if (!query.leaving && query.from_surface) {
+    const LevelOf<float> fine(block.fine());
+    if (!leave_surface<Rule>(block, fine, ray, query, true, root, front)) return root;
+  }
+  Runs<Rule, float> runs(block, SlotBits<float>(block), ray, front, query.t1);
   Run<float> run;
   while (!root.hit && runs.next(true, run)) {
     const AngleOf<Rule, float> angle = angle_from<Rule>(runs.patches, ray, run.begin);

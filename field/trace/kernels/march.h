@@ -1,16 +1,27 @@
 // Certified steps along a ray with the field of one level of a block. Part of block_kernels_<set>.cpp.
 
-inline void sum_sources(const FieldLevel& level, int degree, const OnRay<float> (&p)[3], const LocalRay& ray, bool,
-                        RaySums<float>& sums, float& nearest) {
+// Adds the sources of the level, and its far field, at a place on the ray; `nearest`: the largest 1 / d^2.
+inline void add_level(const LevelOf<float>& of, int degree, const OnRay<float> (&p)[3], const LocalRay& ray, bool,
+                      RaySums<float>& sums, float& nearest) {
   V16 lanes_nearest{};
-  for_each_list(level, degree, RaySummer{ray, probe_of(p), lanes_nearest, sums});
+  for_each_list(of.level, degree, RaySummer{ray, probe_of(p), lanes_nearest, sums});
   nearest = largest_lane(lanes_nearest);
+  add_far(of.level, p, sums);
 }
 
-inline void sum_sources(const FieldLevel& level, int degree, const OnRay<PacketFloat> (&p)[3], const PacketRays& rays,
-                        PacketInt active, RaySums<PacketFloat>& sums, PacketFloat& nearest) {
+inline void add_level(const LevelOf<PacketFloat>& levels, int degree, const OnRay<PacketFloat> (&p)[3],
+                      const PacketRays& rays, PacketInt active, RaySums<PacketFloat>& sums, PacketFloat& nearest) {
+  const unsigned lanes_of = lane_bits(active);
+  if (lanes_of == 0) return;
   const PacketFloat at[3] = {p[0].at, p[1].at, p[2].at};
-  for_each_list(level, degree, PacketSummer{at, rays, lane_bits(active), nearest, sums});
+  const PacketSummer summer{at, rays, lanes_of, nearest, sums};
+  const auto add = [&](const auto& list, int exponent) {
+    with_exponent(exponent, [&](auto known) { summer.template add<decltype(known)::exponent>(list, exponent); });
+  };
+  add([&](int lane) { return curves_of(levels[lane]); }, degree);
+  add([&](int lane) { return points_of(levels[lane]); }, degree - 1);
+  if (const FieldLevel* one = levels.common(lanes_of)) add_far(*one, p, sums);
+  else add_far_of_each(levels, lanes_of, p, sums);
 }
 
 // What gives the angle of a place.
@@ -33,13 +44,14 @@ struct Marcher {
   using Ray = RayOf<F>;
 
   const BlockView& block;
-  const FieldLevel& level;
+  const LevelOf<F>& level;
   const Ray& ray;
   bool exits = false;  // the ray is inside, and what is looked for is where it leaves: all samples are mirrored
   IntOf<F> evaluations{};
   AngleSource<Rule, F> source;
 
-  Marcher(const BlockView& b, const FieldLevel& l, const Ray& r, const AngleSource<Rule, F>& s)
+  // All that is read of the block is the same for all blocks of a blend.
+  Marcher(const BlockView& b, const LevelOf<F>& l, const Ray& r, const AngleSource<Rule, F>& s)
       : block(b), level(l), ray(r), source(s) {}
 
   // At t, of the rays that are active.
@@ -51,14 +63,13 @@ struct Marcher {
     OnRay<F> at[3];
     for (int k = 0; k < 3; ++k) at[k] = {ray.origin[k] + ray.direction[k] * t, ray.direction[k]};
     F nearest{};
-    sum_sources(level, block.degree, at, ray, active, p.s, nearest);
-    add_far(level, at, p.s);
+    add_level(level, block.degree, at, ray, active, p.s, nearest);
     // At most eight half sides of the block: its scale, where it lists no sources at all.
     p.distance = 0.99999F / root_of(max_of(nearest, 1.0F / 64));
     const F yy = p.s.g[0] * p.s.g[0] + p.s.g[1] * p.s.g[1] + p.s.g[2] * p.s.g[2], y = root_of(yy);
     const F dy = (p.s.g[0] * p.s.dg[0] + p.s.g[1] * p.s.dg[1] + p.s.g[2] * p.s.dg[2]) / max_of(y, 1e-12F);
     p.raise = 1 + rounding + position_rounding * static_cast<float>(block.degree + 1) / p.distance;
-    p.y = y + level.g_error;
+    p.y = y + level.g_error();
     if constexpr (Rule == Angle::Mean) angle().judge(p, at, y, dy);
     else if constexpr (Rule == Angle::Patched) angle().judge(p, y, dy);
     else judge(p, y, dy);
@@ -77,7 +88,7 @@ struct Marcher {
   // that floats do not tell which side of the curve they are on. What the curve has to tell is never above this, since
   // v grows at least as fast as f.
   F beyond_critical(const Sample& p) const {
-    const F beyond = block.iso.critical - (p.s.f - level.f_error);
+    const F beyond = block.iso.critical - (p.s.f - level.f_error());
     return select(beyond < 0.0F, beyond, all_lanes<F>(infinity));
   }
 
@@ -92,12 +103,12 @@ struct Marcher {
     p.v = v;
     p.v_slope = turned_v(iso, p.s.df, dy);
     p.curve = curve.value;
-    p.s.f += level.f_error;
+    p.s.f += level.f_error();
     p.residual = margin_at(iso, p.s.f * p.raise, p.y * p.raise);
   }
 
   auto angle() const {
-    if constexpr (Rule == Angle::Mean) return VariedAngle{block, level, ray, source.last};
+    if constexpr (Rule == Angle::Mean) return VariedAngle{block, level.level, ray, source.last};
     else return PatchedAngle<F>{block, level, source.run};
   }
 
@@ -176,7 +187,8 @@ struct Marcher {
   Bend bend_until(const Sample& p, F h, F q) const {
     const Series series = series_of(1 / (1 - q));
     const F hh = h * h;
-    return {(p.s.second * series.field + level.far_bend) * hh, (p.s.third * series.gradient + level.far_g_bend) * hh};
+    return {(p.s.second * series.field + level.far_bend()) * hh,
+            (p.s.third * series.gradient + level.far_g_bend()) * hh};
   }
 
   // Whether the field is below 1 on all of [t, t + h] (h of either sign): B3 and B4 of tracing.md. Both bounds are
@@ -187,12 +199,12 @@ struct Marcher {
     if (!any(near)) return near;
     const Bend bend = bend_until(p, h, q);
     const F x_end = p.s.f + p.s.df * h + bend.field;
-    const F y_up = max_of(p.y, turned_length(p, h) + bend.gradient + level.g_error);
+    const F y_up = max_of(p.y, turned_length(p, h) + bend.gradient + level.g_error());
     if constexpr (Rule != Angle::One)
       return near & (angle().margin_within(p, max_of(p.s.f, x_end), y_up, h, near) > 0.0F);
     const Mask below = near & (margin(p, max_of(p.s.f, x_end), y_up, near) > 0.0F);
     if (!block.iso.two_sided || !any(below)) return below;
-    const F x_low = min_of(p.s.f, p.s.f + p.s.df * h - bend.field) * (1 - rounding) - 2 * level.f_error;
+    const F x_low = min_of(p.s.f, p.s.f + p.s.df * h - bend.field) * (1 - rounding) - 2.0F * level.f_error();
     return below & (margin(p, max_of(0.0F, x_low), y_up, below) > 0.0F);
   }
 
@@ -202,8 +214,8 @@ struct Marcher {
     const F q = abs_of(h) / p.distance;
     const Bend bend = bend_until(p, h, q);
     const F x_high = p.s.f + p.s.df * h + bend.field;
-    const F y = turned_length(p, h) - bend.gradient - level.g_error;
-    F x = x_high - 2 * bend.field - 2 * level.f_error;
+    const F y = turned_length(p, h) - bend.gradient - level.g_error();
+    F x = x_high - 2 * bend.field - 2.0F * level.f_error();
     const Mask known = (q < 0.5F) & (x > 0.0F) & (y > 0.0F);
     if (!any(known)) return known;
     if constexpr (Rule != Angle::One) return known & angle().inside_within(p, x, y, h);
@@ -267,8 +279,8 @@ struct Marcher {
   F smooth_step(const Sample& p, float sign, F limit, Mask active) const {
     const F most = min_of(limit, 0.85F * p.distance);
     const float m = static_cast<float>(block.degree);
-    const F c = p.x_weight * (p.s.second * m * (m + 1) * 0.5F + level.far_bend) +
-                p.y_weight * (p.s.third * (m + 1) * (m + 2) * 0.5F + level.far_g_bend);
+    const F c = p.x_weight * (p.s.second * m * (m + 1) * 0.5F + level.far_bend()) +
+                p.y_weight * (p.s.third * (m + 1) * (m + 2) * 0.5F + level.far_g_bend());
     const F b = -sign * p.slope;
     F model = step_to_zero(p.margin, b, c);
     if constexpr (Rule == Angle::Patched) model = step_to_zero(p.margin, b, c + p.residual_bend);

@@ -1,4 +1,4 @@
-// A packet of rays in one cell, from the ray as a double to where it meets the surface. Part of
+// A packet of rays in their cells, from the ray as a double to where it meets the surface. Part of
 // block_kernels_<set>.cpp.
 //
 // Places and t are those of RayInCube and of BlendTracer's way for one ray, operation by operation.
@@ -79,17 +79,18 @@ struct SomeRays {
   }
 };
 
-// They as RayInCube.
+// They as RayInCube; in one cube, or each in its own.
+template <class Size>
 struct RaysInCube {
   Doubles t_near;
-  double half;
+  Size half;
   Floats origin[3], direction[3];
 
-  RaysInCube(const SomeRays& ray, const double (&center)[3], double cube_half) : half(cube_half) {
+  RaysInCube(const SomeRays& ray, const Size (&center)[3], Size cube_half) : half(cube_half) {
     Doubles toward[3];
     for (int k = 0; k < 3; ++k) toward[k] = center[k] - ray.origin[k];
     t_near = toward[0] * ray.direction[0] + toward[1] * ray.direction[1] + toward[2] * ray.direction[2];
-    const double scale = 1 / half;
+    const Size scale = 1 / half;
     for (int k = 0; k < 3; ++k) {
       origin[k] = narrowed((ray.origin[k] - center[k] + ray.direction[k] * t_near) * scale);
       direction[k] = narrowed(ray.direction[k]);
@@ -100,7 +101,7 @@ struct RaysInCube {
 };
 
 // Where the rays are between the planes of layers of slots, of those in [begin, end].
-inline void clip_to_layers(const TileLayers& tile, const RaysInCube& cube, Floats& begin, Floats& end) {
+inline void clip_to_layers(const TileLayers& tile, const RaysInCube<double>& cube, Floats& begin, Floats& end) {
   for (int k = 0; k < 3; ++k) {
     const Floats d = cube.direction[k], size = d < 0.0F ? -d : d;
     const Floats inverse = 1 / (size > 1e-20F ? d : Floats{} + 1e-20F);
@@ -127,7 +128,7 @@ struct Entry {
 
   // Returns which rays come by.
   DoubleMask narrow(const TileLayers& tile, const SomeRays& ray) {
-    const RaysInCube cube(ray, tile.center, tile.half);
+    const RaysInCube<double> cube(ray, tile.center, tile.half);
     const Floats first = cube.to_local(stretch.enter);
     Floats begin = first, end = cube.to_local(stretch.exit);
     clip_to_layers(tile, cube, begin, end);
@@ -146,25 +147,39 @@ inline void for_each_few(std::uint64_t rays, const Visit& visit) {
 }
 
 // Where the rays are in the cell; returns those that come into it.
-inline std::uint64_t enter_cell(const CellPlace& cell, const PacketView& rays, std::uint64_t asked, bool any_root,
-                                CellRoots& out) {
+std::uint64_t enter_cell(const CellPlace& cell, const PacketView& rays, std::uint64_t asked, bool any_root,
+                         CellRoots& out) {
   std::uint64_t entered = 0;
   for_each_few(asked, [&](int first) {
     const Entry entry(cell, SomeRays(rays, first), any_root);
-    store(entry.stretch.enter, out.enter + first);
-    store(entry.stretch.exit, out.exit + first);
+    const DoubleMask here = double_mask(asked >> first);  // their neighbours may be in other cells
+    store(here ? entry.stretch.enter : load(out.enter + first), out.enter + first);
+    store(here ? entry.stretch.exit : load(out.exit + first), out.exit + first);
     entered |= static_cast<std::uint64_t>(entry.entered) << first;
   });
-  return entered;
+  return entered & asked;
 }
 
-// The rays in the coordinates of the block.
-inline void enter_block(const CellPlace& cell, const PacketView& rays, std::uint64_t asked, const CellRoots& at,
-                        BlockRays& out) {
+// The blocks of the rays.
+struct Frames {
+  alignas(64) double center[3][packet_size], half[packet_size];
+
+  void set(int ray, const CellRays& cell) {
+    for (int k = 0; k < 3; ++k) center[k][ray] = cell.center[k];
+    half[ray] = cell.half;
+  }
+  RaysInCube<Doubles> of(const SomeRays& rays, int first) const {
+    return {rays, {load(center[0] + first), load(center[1] + first), load(center[2] + first)}, load(half + first)};
+  }
+};
+
+// The rays in the coordinates of their blocks.
+inline void enter_blocks(const Frames& frames, const PacketView& rays, std::uint64_t asked, const CellRoots& at,
+                         BlockRays& out) {
   std::uint64_t from_surface = 0, from_outside = 0;
   for_each_few(asked, [&](int first) {
     const SomeRays ray(rays, first);
-    const RaysInCube block(ray, cell.block_center, cell.block_half);
+    const RaysInCube<Doubles> block = frames.of(ray, first);
     const Doubles enter = load(at.enter + first);
     store(block.to_local(enter), out.from + first);
     store(block.to_local(load(at.exit + first)), out.to + first);
@@ -180,12 +195,12 @@ inline void enter_block(const CellPlace& cell, const PacketView& rays, std::uint
 }
 
 // The roots as places on the rays.
-inline void leave_block(const CellPlace& cell, const PacketView& rays, std::uint64_t asked, const BlockRays& roots,
-                        bool any_root, CellRoots& out) {
+inline void leave_blocks(const Frames& frames, const PacketView& rays, std::uint64_t asked, const BlockRays& roots,
+                         bool any_root, CellRoots& out) {
   std::uint64_t in_time = 0;
   for_each_few(asked, [&](int first) {
     const SomeRays ray(rays, first);
-    const RaysInCube block(ray, cell.block_center, cell.block_half);
+    const RaysInCube<Doubles> block = frames.of(ray, first);
     const Doubles exit = load(out.exit + first), enter = load(out.enter + first);
     Doubles at = first_max(block.to_world(load_floats(roots.t + first)), ray.t_min);
     if (any_root) at = first_min(at, exit);
@@ -204,20 +219,25 @@ inline void leave_block(const CellPlace& cell, const PacketView& rays, std::uint
   out.enters_inside = roots.enters_inside;
 }
 
-void roots_between(const BlockView& block, const CellPlace& cell, const PacketView& rays, std::uint64_t asked,
-                   bool any_root, PacketMemory& memory, CellRoots& out) {
+void roots_between(const CellRays* cells, int count, const PacketView& rays, bool any_root, PacketMemory& memory,
+                   CellRoots& out) {
+  BlockRays& in_blocks = *reinterpret_cast<BlockRays*>(memory.rays);
+  Frames frames;
+  __builtin_memset(in_blocks.cell, 0, sizeof in_blocks.cell);
+  std::uint64_t asked = 0;
+  for (int i = 0; i < count; ++i) {
+    asked |= cells[i].rays;
+    for (std::uint64_t left = cells[i].rays; left != 0; left &= left - 1) {
+      const int ray = __builtin_ctzll(left);
+      in_blocks.cell[ray] = i;
+      frames.set(ray, cells[i]);
+    }
+  }
   out.entered = asked;
   out.met = out.hit = out.begins_outside = out.enters_inside = 0;
   if (asked == 0) return;
-  BlockRays& in_block = *reinterpret_cast<BlockRays*>(memory.rays);
-  enter_block(cell, rays, asked, out, in_block);
-  if (block.find_patch != nullptr) BlockSearch<Angle::Patched>(block, any_root, memory).run(asked);
-  else BlockSearch<Angle::One>(block, any_root, memory).run(asked);
-  leave_block(cell, rays, asked, in_block, any_root, out);
-}
-
-void roots_in_cell(const BlockView& block, const CellPlace& cell, const PacketView& rays, std::uint64_t asked,
-                   bool any_root, PacketMemory& memory, CellRoots& out) {
-  const std::uint64_t entered = asked & enter_cell(cell, rays, asked, any_root, out);
-  roots_between(block, cell, rays, entered, any_root, memory, out);
+  enter_blocks(frames, rays, asked, out, in_blocks);
+  if (cells[0].block->find_patch != nullptr) BlockSearch<Angle::Patched>(cells, count, any_root, memory).run(asked);
+  else BlockSearch<Angle::One>(cells, count, any_root, memory).run(asked);
+  leave_blocks(frames, rays, asked, in_blocks, any_root, out);
 }

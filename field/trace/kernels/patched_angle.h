@@ -7,7 +7,7 @@ struct PatchedAngle {
   using Mask = MaskOf<F>;
 
   const BlockView& block;
-  const FieldLevel& level;
+  const LevelOf<F>& level;
   const ShareOnRun<F>& run;
 
   // As Marcher::judge(), with the angle of the place.
@@ -30,7 +30,7 @@ struct PatchedAngle {
     p.slope = share_weight * p.share.c[1] - p.x_weight * p.s.df - p.y_weight * dy;
     p.nominal = p.curve - p.v;
     p.residual_bend = abs_of(share_weight * p.share.c[2]);
-    p.s.f += level.f_error;
+    p.s.f += level.f_error();
     p.sure = !Mask{};
     p.residual = margin_within(p, p.s.f, p.y, F{}, !Mask{});
   }
@@ -53,8 +53,10 @@ struct PatchedAngle {
     const Mask right = right_of_reference(raised_x, raised_y, block.degree);
     const Range shares = shares_until(p, h, all_lanes<F>(rounded));
     const F worst = select(right, shares.high, shares.low);
-    F margin = level.f_error > 0 ? margin_of_next_row(block.tables, right, worst, raised_x, raised_y)
-                                 : AngleRows<F>(block.tables, worst).margin(raised_x, raised_y);
+    const Mask rough = level.f_error() > 0.0F, between = asked & !rough;
+    F margin{};
+    if (any(rough)) margin = margin_of_next_row(block.tables, right, worst, raised_x, raised_y);
+    if (any(between)) margin = select(rough, margin, AngleRows<F>(block.tables, worst).margin(raised_x, raised_y));
     const Mask as_summed = asked & !p.sure;
     if (any(as_summed)) margin = select(as_summed, nominal_within(p, x, y, h), margin);
     return margin;

@@ -94,6 +94,15 @@ inline PacketFloat gather(const float* table, PacketInt index) {
   return gather_lanes<PacketFloat>(table, index);
 #endif
 }
+inline PacketInt gather(const int* table, PacketInt index) {
+#if defined(__AVX512F__)
+  return __builtin_ia32_gathersiv16si(PacketInt{}, table, index, -1, 4);
+#elif defined(__AVX2__)
+  return __builtin_ia32_gathersiv8si(PacketInt{}, table, index, PacketInt{} - 1, 4);
+#else
+  return gather_lanes<PacketInt>(table, index);
+#endif
+}
 // Of sixteen numbers.
 inline int picked(const int (&table)[16], int index) { return table[index]; }
 template <class V, class T>

@@ -1,43 +1,81 @@
 // The stretches of a ray in slots of a block that may hold surface. Part of block_kernels_<set>.cpp.
 
+// Of a slot by its layers.
+template <class Int>
+inline Int octant_of(const Int (&layer)[3]) {
+  return (layer[0] >> 2) | (layer[1] >> 2) << 1 | (layer[2] >> 2) << 2;
+}
+template <class Int>
+inline Int slot_in_octant(const Int (&layer)[3]) {
+  return (layer[0] & 3) | (layer[1] & 3) << 2 | (layer[2] & 3) << 4;
+}
+
 // The bits of a block's 8 x 8 x 8 slots, octant by octant as rays come.
-class SlotBits {
+struct SlotWords {
+  unsigned known = 0;  // a bit for each octant
+  int words[16];       // two for each octant
+
+  void need(const BlockView& block, int octant) {
+    if (known >> octant & 1) return;
+    const std::uint64_t slots = block.surface(octant);
+    words[2 * octant] = static_cast<int>(static_cast<unsigned>(slots));
+    words[2 * octant + 1] = static_cast<int>(static_cast<unsigned>(slots >> 32));
+    known |= 1U << octant;
+  }
+};
+
+// For a ray, or the rays of a packet, which may be in several cells.
+template <class F>
+class SlotBits;
+
+template <>
+class SlotBits<float> {
  public:
   explicit SlotBits(const BlockView& block) : block_(&block) {}
-
-  // Of the slot in these layers.
   bool at(const int (&layer)[3], bool active) {
-    if (active) need(octant_of(layer));
-    return bit_of(layer) != 0;
-  }
-  PacketInt at(const PacketInt (&layer)[3], PacketInt active) {
-    const PacketInt octant = octant_of(layer), known = PacketInt{} + static_cast<int>(known_);
-    const PacketInt unknown = active & ((known >> octant & 1) == 0);
-    for (unsigned left = lane_bits(unknown); left != 0; left &= left - 1) need(octant[__builtin_ctz(left)]);
-    return bit_of(layer) != 0;
+    const int octant = octant_of(layer), slot = slot_in_octant(layer);
+    if (!active) return false;
+    words_.need(*block_, octant);
+    return words_.words[2 * octant + (slot >> 5)] >> (slot & 31) & 1;
   }
 
  private:
-  void need(int octant) {
-    if (known_ >> octant & 1) return;
-    const std::uint64_t slots = block_->surface(octant);
-    words_[2 * octant] = static_cast<int>(static_cast<unsigned>(slots));
-    words_[2 * octant + 1] = static_cast<int>(static_cast<unsigned>(slots >> 32));
-    known_ |= 1U << octant;
+  const BlockView* block_;
+  SlotWords words_;
+};
+
+template <>
+class SlotBits<PacketFloat> {
+ public:
+  SlotBits() = default;
+  // `cell`: which of the cells, and of their words, is that of a lane.
+  SlotBits(const CellRays* cells, SlotWords* words, PacketInt cell)
+      : cells_(cells), words_(words), place_(cell * ints_per_cell) {
+    known_ = gather(ints(), place_);
   }
-  template <class Int>
-  static Int octant_of(const Int (&layer)[3]) {
-    return (layer[0] >> 2) | (layer[1] >> 2) << 1 | (layer[2] >> 2) << 2;
-  }
-  template <class Int>
-  Int bit_of(const Int (&layer)[3]) const {
-    const Int slot = (layer[0] & 3) | (layer[1] & 3) << 2 | (layer[2] & 3) << 4;
-    return picked(words_, 2 * octant_of(layer) + (slot >> 5)) >> (slot & 31) & 1;
+  PacketInt at(const PacketInt (&layer)[3], PacketInt active) {
+    const PacketInt octant = octant_of(layer), slot = slot_in_octant(layer);
+    const PacketInt unknown = active & ((known_ >> octant & 1) == 0);
+    if (any(unknown)) need(unknown, octant);
+    const PacketInt word = gather(ints() + 1, place_ + 2 * octant + (slot >> 5));
+    return (word >> (slot & 31) & 1) != 0;
   }
 
-  const BlockView* block_;
-  unsigned known_ = 0;              // a bit for each octant
-  alignas(64) int words_[16] = {};  // two for each octant
+ private:
+  static constexpr int ints_per_cell = sizeof(SlotWords) / sizeof(int);
+
+  const int* ints() const { return reinterpret_cast<const int*>(words_); }
+  void need(PacketInt rays, PacketInt octant) {
+    for (unsigned left = lane_bits(rays); left != 0; left &= left - 1) {
+      const int lane = __builtin_ctz(left), cell = place_[lane] / ints_per_cell;
+      words_[cell].need(*cells_[cell].block, octant[lane]);
+    }
+    known_ = gather(ints(), place_);
+  }
+
+  const CellRays* cells_ = nullptr;
+  SlotWords* words_ = nullptr;
+  PacketInt place_{}, known_{};
 };
 
 // The layer of a coordinate.
@@ -94,8 +132,9 @@ class Runs {
  public:
   using Mask = MaskOf<F>;
 
-  Runs(const BlockView& block, const RayOf<F>& ray, F t0, F t1)
-      : block_(&block), slots_(block), t_(t0), end_(t1), ended_(!(t0 < t1)) {
+  // `block` gives the patches: where there are any, it is that of all rays.
+  Runs(const BlockView& block, const SlotBits<F>& slots, const RayOf<F>& ray, F t0, F t1)
+      : block_(&block), slots_(slots), t_(t0), end_(t1), ended_(!(t0 < t1)) {
     for (int k = 0; k < 3; ++k) layers_[k] = Layer<F>(ray.origin[k], ray.direction[k], t0);
   }
 
@@ -129,7 +168,7 @@ class Runs {
 
  private:
   const BlockView* block_;
-  SlotBits slots_;
+  SlotBits<F> slots_;
   Layer<F> layers_[3];
   F t_, end_;
   Mask ended_;

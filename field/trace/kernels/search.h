@@ -69,15 +69,13 @@ struct Search {
   Marcher<Rule, F>& march;
   F front, end;
   Mask have_last{}, have_inside{};
-  bool exact;                            // the level is the field itself: it tells what is inside
   F undecided = all_lanes<F>(infinity);  // where the first stretch was passed over that could not be decided
   Doubt<F> doubt;                        // the last such stretch, not in `undecided` yet
   Sample last, inside;                   // last: the outside sample whose certificate reaches the front
   Islands<Rule, F> islands;
   F nearest_island{};  // where it begins
 
-  Search(Marcher<Rule, F>& m, F t0, F t1)
-      : march(m), front(t0), end(t1), exact(!(m.level.f_error > 0) && !(m.level.g_error > 0)), islands(m.ray) {}
+  Search(Marcher<Rule, F>& m, F t0, F t1) : march(m), front(t0), end(t1), islands(m.ray) {}
 
   // Others begin in these lanes.
   void restart(Mask lanes_of, F t0, F t1) {
@@ -138,7 +136,7 @@ struct Search {
   }
 
   void record(Mask rays, const Sample& p) {
-    const Mask not_outside = rays & ((exact ? p.nominal : p.residual) <= 0.0F);
+    const Mask not_outside = rays & (select(is_exact(march.level), p.nominal, p.residual) <= 0.0F);
     if (any(not_outside)) {
       assign(not_outside, inside, p);
       have_inside = have_inside | not_outside;

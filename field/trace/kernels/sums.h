@@ -9,6 +9,15 @@ struct RaySums {
   F third;        // at least sum m w tau d^-(m+3) (m M3)
 };
 
+inline void assign(PacketInt mask, RaySums<PacketFloat>& to, const RaySums<PacketFloat>& from) {
+  using Sums = RaySums<PacketFloat>;
+  for (PacketFloat Sums::*part : {&Sums::f, &Sums::df, &Sums::second, &Sums::third}) assign(mask, to.*part, from.*part);
+  for (int i = 0; i < 3; ++i) {
+    assign(mask, to.g[i], from.g[i]);
+    assign(mask, to.dg[i], from.dg[i]);
+  }
+}
+
 struct Probe {
   Native px, py, pz, ex, ey, ez;
 };
@@ -158,35 +167,47 @@ inline const float* point_sources(const FieldLevel& l) {
   return l.sources + static_cast<long>(l.curve_groups) * floats_per_group;
 }
 
-// Calls sums<Exponent>(groups, count, exponent) for the curves (exponent: the degree) and for the points (one less).
+// An exponent that is known to the compiler; 0: only at run time.
+template <int Exponent>
+struct Known {
+  static constexpr int exponent = Exponent;
+};
+
+template <class Add>
+inline void with_exponent(int exponent, const Add& add) {
+  switch (exponent) {
+    case 2:
+      return add(Known<2>{});
+    case 3:
+      return add(Known<3>{});
+    case 4:
+      return add(Known<4>{});
+    case 5:
+      return add(Known<5>{});
+    default:
+      add(Known<0>{});
+  }
+}
+
+// The sources of one exponent.
+struct SourceList {
+  const float* groups;
+  int count;
+};
+inline SourceList curves_of(const FieldLevel& l) { return {l.sources, l.curve_groups}; }
+inline SourceList points_of(const FieldLevel& l) { return {point_sources(l), l.point_groups}; }
+
+// Calls sums.add<Exponent>(groups, count, exponent) for the curves (exponent: the degree) and for the points (one
+// less).
 template <class Sums>
 inline void for_each_list(const FieldLevel& l, int degree, const Sums& sums) {
-  if (l.curve_groups > 0) switch (degree) {
-      case 3:
-        sums.template add<3>(l.sources, l.curve_groups, 3);
-        break;
-      case 4:
-        sums.template add<4>(l.sources, l.curve_groups, 4);
-        break;
-      case 5:
-        sums.template add<5>(l.sources, l.curve_groups, 5);
-        break;
-      default:
-        sums.template add<0>(l.sources, l.curve_groups, degree);
-    }
-  if (l.point_groups > 0) switch (degree) {
-      case 3:
-        sums.template add<2>(point_sources(l), l.point_groups, 2);
-        break;
-      case 4:
-        sums.template add<3>(point_sources(l), l.point_groups, 3);
-        break;
-      case 5:
-        sums.template add<4>(point_sources(l), l.point_groups, 4);
-        break;
-      default:
-        sums.template add<0>(point_sources(l), l.point_groups, degree - 1);
-    }
+  const auto add = [&](const SourceList& list, int exponent) {
+    if (list.count == 0) return;
+    with_exponent(exponent,
+                  [&](auto known) { sums.template add<decltype(known)::exponent>(list.groups, list.count, exponent); });
+  };
+  add(curves_of(l), degree);
+  add(points_of(l), degree - 1);
 }
 
 // For one ray; `nearest` becomes the largest 1 / d^2.
@@ -204,7 +225,7 @@ struct RaySummer {
   }
 };
 
-// For a packet: each ray has its own sums over the sources, in the order of a single ray.
+// For a packet: each ray has its own sums over the sources of its own level, in the order of a single ray.
 struct PacketSummer {
   const PacketFloat (&at)[3];
   const PacketRays& rays;
@@ -212,12 +233,15 @@ struct PacketSummer {
   PacketFloat& nearest;
   RaySums<PacketFloat>& out;
 
-  template <int Exponent>
-  void add(const float* group, int groups, int exponent) const {
+  // `list` is that of a lane.
+  template <int Exponent, class ListOf>
+  void add(const ListOf& list, int exponent) const {
     V16 s[packet_lanes];
+    unsigned having = 0;
     for (unsigned left = ~active & all_lane_bits; left != 0; left &= left - 1) s[__builtin_ctz(left)] = V16{};
     for (unsigned left = active; left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left);
+      const SourceList sources = list(lane);
       const Probe probe{Native{} + at[0][lane],
                         Native{} + at[1][lane],
                         Native{} + at[2][lane],
@@ -225,13 +249,23 @@ struct PacketSummer {
                         Native{} + rays.direction[1][lane],
                         Native{} + rays.direction[2][lane]};
       V16 close{};
-      const V16 sums = sum_list<Exponent>(group, groups, exponent, probe, close);
+      const V16 sums = sum_list<Exponent>(sources.groups, sources.count, exponent, probe, close);
       s[lane] = with_largest_last(sums, close);
+      having |= static_cast<unsigned>(sources.count > 0) << lane;
     }
+    if (having != 0) add_columns(s, having, static_cast<float>(Exponent > 0 ? Exponent : exponent));
+  }
+
+ private:
+  // A ray without a list of this exponent keeps its sums as they are.
+  void add_columns(const V16 (&rows)[packet_lanes], unsigned having, float m) const {
     PacketFloat columns[lanes];
-    find_columns(s, columns);
-    add_list(static_cast<float>(Exponent > 0 ? Exponent : exponent), columns, rays.direction, out);
+    find_columns(rows, columns);
     nearest = larger(nearest, columns[lanes - 1]);
+    if (having == active) return add_list(m, columns, rays.direction, out);
+    RaySums<PacketFloat> more = out;
+    add_list(m, columns, rays.direction, more);
+    assign(mask_of(having), out, more);
   }
 };
 
