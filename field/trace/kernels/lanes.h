@@ -11,6 +11,7 @@ inline T power_of(T a, int k) {
   }
   return power;
 }
+
 // inv^(m/2) = d^-m. Exponent 0 in the template means known only at run time.
 template <int Exponent, class V>
 inline V inverse_power(V inv, int exponent) {
@@ -49,11 +50,12 @@ inline V16 lane_sums(const V16 (&a)[Count]) {
          __builtin_shufflevector(d[0], d[1], 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
 }
 #else
-// Its quarters, added.
+// Of the quarters, by halves.
 inline V4 sum_of_quarters(const V16& v) {
   const auto half = v.low + v.high;
   return low_half(half) + high_half(half);
 }
+// Of each of four vectors.
 inline V4 sums_of_four(const V16* v) {
   const V4 a = sum_of_quarters(v[0]), b = sum_of_quarters(v[1]), c = sum_of_quarters(v[2]), d = sum_of_quarters(v[3]);
   const V4 ab = __builtin_shufflevector(a, b, 0, 1, 4, 5) + __builtin_shufflevector(a, b, 2, 3, 6, 7);
@@ -91,7 +93,7 @@ inline V16 with_largest_last(V16 lanes_of, V16 v) {
   return __builtin_shufflevector(lanes_of, v, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 31);
 }
 #else
-// In each lane of the four.
+// The largest lane, in each of four.
 inline V4 largest_in_four(const V16& v) {
   const auto half = larger(v.low, v.high);
   V4 m = larger(low_half(half), high_half(half));

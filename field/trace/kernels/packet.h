@@ -3,7 +3,7 @@
 //
 // Places and t are those of RayInCube and of BlendTracer's way for one ray, operation by operation.
 
-// As many doubles as a register has lanes for, half as many as floats; and as many floats.
+// A register of doubles, half as many as floats, and as many floats as these.
 inline constexpr int double_lanes = native_lanes / 2;
 using Doubles = double __attribute__((vector_size(8 * double_lanes)));
 using DoubleMask = long long __attribute__((vector_size(8 * double_lanes)));
@@ -79,7 +79,7 @@ struct SomeRays {
   }
 };
 
-// They as RayInCube; in one cube, or each in its own.
+// The same as RayInCube; in one cube, or each in its own.
 template <class Size>
 struct RaysInCube {
   Doubles t_near;
@@ -112,7 +112,7 @@ inline void clip_to_layers(const TileLayers& tile, const RaysInCube<double>& cub
   }
 }
 
-// They on their way into the cell.
+// The same on their way into the cell.
 struct Entry {
   Stretches stretch;
   unsigned entered;  // a bit for each ray

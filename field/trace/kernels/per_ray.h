@@ -11,7 +11,7 @@ inline constexpr unsigned all_lane_bits = (1U << packet_lanes) - 1;
 using PacketFloat = Native;
 using PacketInt = NativeInt;
 
-// They in the coordinates of a block, and memory for one search on them at a time.
+// Such rays in the coordinates of a block, and memory for one search on them at a time.
 struct PacketRays {
   PacketFloat origin[3], direction[3];
   PacketMemory* memory;

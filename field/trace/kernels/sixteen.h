@@ -7,6 +7,7 @@ using V16 = Native;
 using Index16 = NativeInt;
 
 inline V16 splat(float s) { return V16{} + s; }
+inline V16 load(const float* p) { return load_native(p); }
 #else
 template <class Half>
 struct Pair {
@@ -14,12 +15,14 @@ struct Pair {
 };
 
 #if defined(__AVX__)
-using V16 = Pair<Native>;
-using Index16 = Pair<NativeInt>;
+using V8 = Native;
+using Index8 = NativeInt;
 #else
-using V16 = Pair<Pair<Native> >;
-using Index16 = Pair<Pair<NativeInt> >;
+using V8 = Pair<Native>;
+using Index8 = Pair<NativeInt>;
 #endif
+using V16 = Pair<V8>;
+using Index16 = Pair<Index8>;
 
 #define MARROW_ON_HALVES(op)                                                 \
   template <class Half>                                                      \
@@ -83,24 +86,24 @@ inline unsigned lane_bits(const Pair<HalfMask>& mask) {
 
 #if defined(__AVX__)
 inline V16 splat(float s) { return {Native{} + s, Native{} + s}; }
-inline V4 low_half(Native v) { return __builtin_ia32_ps_ps256(v); }
-inline V4 high_half(Native v) { return __builtin_ia32_vextractf128_ps256(v, 1); }
-inline Native joined(V4 low, V4 high) {
-  return __builtin_ia32_vinsertf128_ps256(__builtin_ia32_ps256_ps(low), high, 1);
-}
+inline V16 load(const float* p) { return {load_native(p), load_native(p + 8)}; }
+inline V4 low_half(V8 v) { return __builtin_ia32_ps_ps256(v); }
+inline V4 high_half(V8 v) { return __builtin_ia32_vextractf128_ps256(v, 1); }
+inline V8 joined(V4 low, V4 high) { return __builtin_ia32_vinsertf128_ps256(__builtin_ia32_ps256_ps(low), high, 1); }
 inline V4 larger(V4 a, V4 b) { return __builtin_ia32_maxps(a, b); }
 #else
 inline V16 splat(float s) {
-  const Pair<Native> half{Native{} + s, Native{} + s};
+  const V8 half{Native{} + s, Native{} + s};
   return {half, half};
 }
-inline V4 low_half(const Pair<Native>& v) { return v.low; }
-inline V4 high_half(const Pair<Native>& v) { return v.high; }
-inline Pair<Native> joined(V4 low, V4 high) { return {low, high}; }
+inline V16 load(const float* p) {
+  return {{load_native(p), load_native(p + 4)}, {load_native(p + 8), load_native(p + 12)}};
+}
+inline V4 low_half(const V8& v) { return v.low; }
+inline V4 high_half(const V8& v) { return v.high; }
+inline V8 joined(V4 low, V4 high) { return {low, high}; }
 #endif
 #endif
-
-inline V16 load(const float* p) { return *static_cast<const V16*>(__builtin_assume_aligned(p, 64)); }
 
 // The registers that hold the sixteen, in order.
 inline constexpr int natives = lanes / native_lanes;
