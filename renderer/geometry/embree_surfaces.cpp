@@ -103,6 +103,7 @@ std::optional<SurfaceHit> EmbreeSurfaces::hit_of(const PartHierarchy::Hit& found
     hit.position = ray.at(found.t);
     hit.object = placed.object;
     placed.solid->describe(found.element, found.place, ray, hit);
+    united_.free_start(found.solid, ray, hit);
     return hit;
   }
   const auto& [plane, t] = behind;
@@ -116,15 +117,20 @@ std::optional<SurfaceHit> EmbreeSurfaces::hit_of(const PartHierarchy::Hit& found
   return hit;
 }
 
-// Of a ray that begins inside only whole elements tell.
-PartHierarchy::Hit EmbreeSurfaces::asked_of_elements(const Ray& ray, std::vector<RayVisit>* visits) const {
+// Of a ray that begins inside only whole elements tell, and of one that is inside several solids these one by one.
+PartHierarchy::Hit EmbreeSurfaces::asked_again(PartHierarchy::Hit found, const Ray& ray,
+                                               std::vector<RayVisit>* visits) const {
+  if (found.begins_inside) {
+    if (visits != nullptr) visits->clear();
+    found = whole_->first_hit(ray, visits);
+  }
+  if (!united_.is_covered(found, ray)) return found;
   if (visits != nullptr) visits->clear();
-  return whole_->first_hit(ray, visits);
+  return united_.first_hit(ray, visits);
 }
 
 PartHierarchy::Hit EmbreeSurfaces::nearest_on(const Ray& ray, std::vector<RayVisit>* visits) const {
-  const PartHierarchy::Hit found = finest().first_hit(ray, visits);
-  return found.begins_inside ? asked_of_elements(ray, visits) : found;
+  return asked_again(finest().first_hit(ray, visits), ray, visits);
 }
 
 std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray) const {
@@ -141,8 +147,14 @@ std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray, RayRecord& r
   return hit_of(found, plane, ray);
 }
 
+// Inside a body all that is found before its exit is none of its surface, and any exit may be too far away.
+bool EmbreeSurfaces::hides(const PartHierarchy::Hit& any, const Ray& ray) const {
+  const bool inside = any.begins_inside || (any.found && united_.begins_inside(ray));
+  return inside ? nearest_on(ray, nullptr).found : any.found;
+}
+
 bool EmbreeSurfaces::occluded(const Ray& ray) const {
-  return nearest_plane(ray).plane != nullptr || finest().occluded(ray);
+  return nearest_plane(ray).plane != nullptr || hides(finest().any_hit(ray), ray);
 }
 
 EmbreeSurfaces::BeforePlanes::BeforePlanes(const EmbreeSurfaces& surfaces, std::span<const Ray> all) : rays(all) {
@@ -159,7 +171,7 @@ void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::option
   std::vector<PartHierarchy::Hit> found(rays.size());
   stream_first_hits(finest(), before.rays, found, {});
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (found[i].begins_inside) found[i] = asked_of_elements(before.rays[i], nullptr);
+    found[i] = asked_again(found[i], before.rays[i], nullptr);
     hits[i] = hit_of(found[i], before.plane(i), rays[i]);
   }
 }
@@ -173,17 +185,17 @@ void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::option
   std::vector<PartHierarchy::Hit> found(rays.size());
   stream_first_hits(finest(), before.rays, found, std::span(visits).first(rays.size()));
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (found[i].begins_inside) found[i] = asked_of_elements(before.rays[i], &visits[i]);
+    found[i] = asked_again(found[i], before.rays[i], &visits[i]);
     records[i] = record_of(visits[i], found[i].undecided, std::min({found[i].t, before.plane(i).t, rays[i].t_max}));
     hits[i] = hit_of(found[i], before.plane(i), rays[i]);
   }
 }
 
 void EmbreeSurfaces::occluded(std::span<const Ray> rays, std::span<std::uint8_t> hidden) const {
-  stream_occluded(finest(), rays, hidden);
-  if (planes_.empty()) return;
+  std::vector<PartHierarchy::Hit> any(rays.size());
+  stream_any_hits(finest(), rays, any);
   for (std::size_t i = 0; i < rays.size(); ++i)
-    if (nearest_plane(rays[i]).plane != nullptr) hidden[i] = 1;
+    hidden[i] = hides(any[i], rays[i]) || nearest_plane(rays[i]).plane != nullptr ? 1 : 0;
 }
 
 }  // namespace marrow

@@ -32,7 +32,8 @@ class PartHierarchy {
   /// The smallest t wins; at equal t the lower solid, the lower element, the part entered first: the order of traversal
   /// shows nowhere. `visits` grows, if there is one.
   Hit first_hit(const Ray&, std::vector<RayVisit>* visits = nullptr) const;
-  bool occluded(const Ray&) const;
+  /// `found`: something is in the way; the rest does not count, but `begins_inside`.
+  Hit any_hit(const Ray&) const;
 
   static constexpr std::size_t most_together = 16;
   /// The nearest parts ahead of each of at most `most_together` rays; sooner when they are neighbours.

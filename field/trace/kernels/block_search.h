@@ -109,7 +109,7 @@ class BlockSearch {
       const std::uint64_t met = decide_all(approach_all(open)) | surely_inside_;
       r.hit |= met;
       const std::uint64_t unknown = met & ~r.begins_outside;
-      if (!any_root_ && unknown != 0) find_sides(unknown);
+      if (unknown != 0) find_sides(unknown);
       open &= ~met;
       open &= next_runs(open);
     }
