@@ -45,7 +45,7 @@ Result<std::unique_ptr<EmbreeSurfaces>> EmbreeSurfaces::make(std::vector<PlacedS
   std::vector<PartsOfSolid> elements;
   for (const PlacedSolid& p : s->solids_) {
     s->extent_.include(p.solid->extent());
-    elements.push_back({p.solid.get(), whole_elements(*p.solid)});
+    elements.push_back({p.solid.get(), p.object, whole_elements(*p.solid)});
   }
   auto whole = PartHierarchy::make(s->device_.get(), std::move(elements));
   if (!whole) return whole.why();
@@ -62,7 +62,7 @@ void EmbreeSurfaces::refine() const {
   std::vector<PartsOfSolid> solids;
   Division division;
   for (const PlacedSolid& p : solids_) {
-    solids.push_back({p.solid.get(), p.solid->parts()});
+    solids.push_back({p.solid.get(), p.object, p.solid->parts()});
     division.add(solids.back().parts);
     if (division.parts > most_parts) return;
   }
@@ -94,6 +94,37 @@ bool EmbreeSurfaces::Division::is_like(const Division& b) const {
          std::fabs(area - b.area) <= much * b.area;
 }
 
+// Whether the surface of another object passes between a hit and the start of further rays. The ray has not met it, so
+// that a plane has the hit on the side where the ray begins.
+bool EmbreeSurfaces::is_cut_off(const Ray& ray, const SurfaceHit& hit) const {
+  const Vec3d begin = ray.at(ray.t_min);
+  for (const PlacedPlane& p : planes_)
+    if (dot(p.normal, begin - p.point) * dot(p.normal, hit.outside - p.point) < 0) return true;
+  const Vec3d way = hit.outside - hit.position;
+  const double reach = length(way);
+  if (!united_.several() || !(reach > 0)) return false;
+  const PartHierarchy::Hit between =
+      finest().any_hit({hit.position, UnitVec3::unchecked(way / reach), 0, reach}, hit.object);
+  return between.found && !between.begins_inside;
+}
+
+// Where the ray came from nothing is in the way; else nearer to the surface.
+void EmbreeSurfaces::uncover_start(std::size_t solid, const Ray& ray, SurfaceHit& hit) const {
+  constexpr int most_halvings = 20;
+  if (const auto back = united_.start_before(solid, ray, hit)) {
+    hit.outside = *back;
+    return;
+  }
+  SurfaceHit nearer = hit;
+  for (int i = 0; i < most_halvings; ++i) {
+    nearer.outside = hit.position + 0.5 * (nearer.outside - hit.position);
+    if (!united_.is_outside(solid, nearer.outside)) return;
+    if (is_cut_off(ray, nearer)) continue;
+    hit.outside = nearer.outside;
+    return;
+  }
+}
+
 std::optional<SurfaceHit> EmbreeSurfaces::hit_of(const PartHierarchy::Hit& found, const PlaneHit& behind,
                                                  const Ray& ray) const {
   SurfaceHit hit;
@@ -104,6 +135,7 @@ std::optional<SurfaceHit> EmbreeSurfaces::hit_of(const PartHierarchy::Hit& found
     hit.object = placed.object;
     placed.solid->describe(found.element, found.place, ray, hit);
     united_.free_start(found.solid, ray, hit);
+    if (united_.may_be_cut_off(found.solid) && is_cut_off(ray, hit)) uncover_start(found.solid, ray, hit);
     return hit;
   }
   const auto& [plane, t] = behind;

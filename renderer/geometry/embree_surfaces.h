@@ -76,6 +76,8 @@ class EmbreeSurfaces final : public Surfaces {
   bool hides(const PartHierarchy::Hit& any, const Ray&) const;
   PartHierarchy::Hit nearest_on(const Ray&, std::vector<RayVisit>*) const;
   const PartHierarchy& finest() const { return *finest_.load(std::memory_order_acquire); }
+  bool is_cut_off(const Ray&, const SurfaceHit&) const;
+  void uncover_start(std::size_t solid, const Ray&, SurfaceHit&) const;
   std::optional<SurfaceHit> hit_of(const PartHierarchy::Hit&, const PlaneHit&, const Ray&) const;
 
   std::vector<PlacedSolid> solids_;

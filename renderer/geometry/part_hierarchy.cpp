@@ -20,6 +20,7 @@ struct Query : RTCIntersectContext {
   explicit Query(std::span<StreamedRay* const> of_stream) : stream(of_stream) { rtcInitIntersectContext(this); }
   PartVisit* single = nullptr;
   std::span<StreamedRay* const> stream;  // Embree names a ray by its place here
+  ObjectId left_out;
 };
 
 // Embree's t of a place on the ray, behind the place itself, also where that is the ray's beginning: a box that holds a
@@ -73,10 +74,11 @@ void intersect_callback(const RTCIntersectFunctionNArguments* a) {
 }
 
 void occluded_callback(const RTCOccludedFunctionNArguments* a) {
-  PartVisit& visit = *static_cast<const Query*>(a->context)->single;
+  const auto& q = *static_cast<const Query*>(a->context);
+  PartVisit& visit = *q.single;
   const PartsOfSolid& of = parts_of(a->geometryUserPtr);
   const SolidPart& part = of.parts[a->primID];
-  if (visit.in(part.box).empty()) return;
+  if (of.object == q.left_out || visit.in(part.box).empty()) return;
   ElementLog log = visit.before(*of.solid);
   visit.best.found |= of.solid->hit_in_part(part, visit.ray, true, log).has_value();
   visit.note_side(*of.solid, log);
@@ -187,11 +189,12 @@ PartHierarchy::Hit PartHierarchy::first_hit(const Ray& ray, std::vector<RayVisit
   return visit.best;
 }
 
-PartHierarchy::Hit PartHierarchy::any_hit(const Ray& ray) const {
+PartHierarchy::Hit PartHierarchy::any_hit(const Ray& ray, ObjectId but) const {
   PartVisit visit(ray);
   RTCRay r{};
   if (!start(padded_bounds_, visit, reinterpret_cast<RTCRayN*>(&r), 1, 0)) return {};
   Query q(visit);
+  q.left_out = but;
   rtcOccluded1(scene_.get(), &q, &r);
   return visit.best;
 }

@@ -9,6 +9,8 @@ namespace {
 
 // Of values near 1: more than sums of floats put a hit off. So far inside none of them takes a place to be outside.
 constexpr double clearly = 1e-5, surely = 1e-3;
+// What doubles may round.
+constexpr double least_margin = 1e-12;
 
 Vec3d outward(const FieldSample& s) {
   const double steepness = length(s.gradient);
@@ -133,7 +135,7 @@ void UnitedSolids::free_start(std::size_t solid, const Ray& ray, SurfaceHit& hit
   const Body& body = bodies_[solids_[solid].body];
   const double first = length(hit.outside - hit.position), longest = 1e-2 * max_component(solids_[solid].reach.size());
   const Frame frame = Frame::around(hit.normal);
-  for (const double margin : {3 * clearly, 1e-12})
+  for (const double margin : {3 * clearly, least_margin})
     for (const Vec3d& way : {normal + away, back, away + back, normal + back, away, -back, frame.to_world({1, 0, 0}),
                              frame.to_world({-1, 0, 0}), frame.to_world({0, 1, 0}), frame.to_world({0, -1, 0})})
       for (double step = first; step < std::max(longest, 16 * first); step *= 2)
@@ -141,6 +143,20 @@ void UnitedSolids::free_start(std::size_t solid, const Ray& ray, SurfaceHit& hit
           hit.outside = p;
           return;
         }
+}
+
+std::optional<Vec3d> UnitedSolids::start_before(std::size_t solid, const Ray& ray, const SurfaceHit& hit) const {
+  if (!(dot(ray.direction, hit.normal) < 0)) return {};
+  const double longest = std::min(hit.t - ray.t_min, 1e-2 * max_component(solids_[solid].reach.size()));
+  for (const double margin : {3 * clearly, least_margin})
+    for (double step = std::min(length(hit.outside - hit.position), longest); step <= longest; step *= 2)
+      if (const Vec3d p = hit.position - ray.direction * step; largest_at(bodies_[solids_[solid].body], p) < 1 - margin)
+        return p;
+  return {};
+}
+
+bool UnitedSolids::is_outside(std::size_t solid, const Vec3d& p) const {
+  return largest_at(bodies_[solids_[solid].body], p) < 1 - least_margin;
 }
 
 }  // namespace marrow

@@ -29,6 +29,13 @@ class UnitedSolids {
   PartHit first_hit(const Ray&, std::vector<RayVisit>* visits) const;
   /// Moves the start of further rays out of the other solids of the object, where it lies in one of them.
   void free_start(std::size_t solid, const Ray&, SurfaceHit&) const;
+  /// Back along a ray that came from outside: the first of growing steps that is outside the solid's object.
+  std::optional<Vec3d> start_before(std::size_t solid, const Ray&, const SurfaceHit&) const;
+  bool is_outside(std::size_t solid, const Vec3d& p) const;
+  /// Whether starts beside it are far enough from it to lie behind other surface: not those beside a triangle.
+  bool may_be_cut_off(std::size_t solid) const { return !solids_[solid].reach.empty(); }
+  /// Whether there are several objects.
+  bool several() const { return bodies_.size() > 1; }
 
  private:
   struct Placed {
