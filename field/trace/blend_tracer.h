@@ -11,6 +11,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -87,6 +88,12 @@ struct SurfacePoint {
   Vec3d outside;    ///< beside the surface, where the field is certainly below the iso-value
 };
 
+/// A hit in a block.
+struct SurfaceQuery {
+  const Block* block = nullptr;
+  Vec3d position;
+};
+
 /// Of what has been built so far.
 struct TraceStatistics {
   std::size_t tiles = 0;  ///< of the first level, divided or not
@@ -127,6 +134,8 @@ class BlendTracer {
   SurfacePoint surface_at(std::size_t tile, const Vec3d& position) const;
   /// The same in the block of a hit.
   SurfacePoint surface_at(const Block&, const Vec3d& position) const;
+  /// Of each of the hits, to the same bits; sooner for many.
+  void surfaces_at(std::span<const SurfaceQuery> hits, std::span<SurfacePoint> found) const;
 
   const BlendField& field() const;
   TraceStatistics statistics() const;

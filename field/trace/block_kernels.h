@@ -1,7 +1,8 @@
 // The inner loops of tracing: field sums over the sources of one block, and the first root along a ray.
 //
 // Compiled once for each instruction set (block_kernels_<set>.cpp); all give the same bits, because every
-// sum has 16 lanes whatever the hardware, is reduced in one fixed order, and uses only + - * / and sqrt.
+// sum has 16 lanes whatever the hardware, is reduced in one fixed order, and uses only + - * / and sqrt. Packets have a
+// ray in each lane of a register, 16, 8 or 4: their bits do not depend on how many go together.
 //
 // Everything is in block coordinates: x = (p - centre) / half. In them f and grad_S f keep their values.
 #pragma once
@@ -157,6 +158,27 @@ struct PointField {
   float share_bend;                ///< |share - its linear part| <= share_bend h^2 on short steps h
 };
 
+/// Hits on the surface of one blend, a lane each, as PointField tells of them in the coordinates of their blocks; and
+/// where rays may leave from beside them.
+struct SurfaceLanes {
+  alignas(64) float f[lanes], gradient[3][lanes], si_gradient[3][lanes], hessian[6][lanes];
+  alignas(64) float nearest[lanes], second[lanes], third[lanes];
+  alignas(64) float f_error[lanes], g_error[lanes];  ///< of their levels
+  /// Of the range of angles, where alpha varies: the share, its gradient and bend, by how much it may be off on a step,
+  /// and what makes a step of h distances change it by up to 1 / (1 - growth h) times that.
+  alignas(64) float share[lanes], share_gradient[3][lanes], share_bend[lanes], share_error[lanes], share_growth[lanes];
+
+  alignas(64) float growth[3][lanes];  ///< out: the direction in which the corrected field grows, of any length
+  alignas(64) float step[lanes];       ///< out: how far to go against it until the field is certainly below 1
+};
+
+/// What tells where the surface of a blend is.
+struct SurfaceRule {
+  IsoCurve::View iso;
+  AngleTables tables;  ///< where alpha varies
+  int degree;
+};
+
 /// The share of the range of angles as the strands of a fine level tell it, at strand_place of a cube; lanes behind
 /// them hold nothing.
 struct StrandShares {
@@ -261,14 +283,15 @@ struct BlockKernels {
   };
   /// The first t in [t0, t1] where the corrected field reaches 1.
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
-  /// first_root() for each asked ray that comes into a cell, where skeletons have no angle each, to the same bits. Null
-  /// where the instruction set has no good vectors of sixteen.
+  /// first_root() for each asked ray that comes into a cell, where skeletons have no angle each, to the same bits.
   void (*roots_in_cell)(const BlockView&, const CellPlace&, const PacketView&, std::uint64_t asked, bool any,
                         PacketMemory&, CellRoots&);
-  /// The same of rays that are known to come through the cell, from `enter` to `exit`. Null with the other one.
+  /// The same of rays that are known to come through the cell, from `enter` to `exit`.
   void (*roots_between)(const BlockView&, const CellPlace&, const PacketView&, std::uint64_t asked, bool any,
                         PacketMemory&, CellRoots&);
   PointField (*point_field)(const FieldLevel&, int degree, const float point[3]);
+  /// Of the first `count` lanes.
+  void (*surface_starts)(const SurfaceRule&, int count, SurfaceLanes&);
   /// Through the slots of a set, in coordinates of the cube of 4 x 4 x 4 slots, [-1, 1]^3.
   void (*walk)(std::uint64_t slots, const LocalRay&, float t0, float t1, Walk&);
   CubeBounds (*cube_bounds)(const FieldLevel&, int degree, const float center[3], float half);

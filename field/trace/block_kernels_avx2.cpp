@@ -7,6 +7,8 @@ namespace marrow::avx2 {
 namespace {
 // In this order: each builds on those before.
 // clang-format off
+#include "field/trace/kernels/native.h"
+#include "field/trace/kernels/sixteen.h"
 #include "field/trace/kernels/lanes.h"
 #include "field/trace/kernels/per_ray.h"
 #include "field/trace/kernels/sums.h"
@@ -24,8 +26,11 @@ namespace {
 #include "field/trace/kernels/approach.h"
 #include "field/trace/kernels/runs.h"
 #include "field/trace/kernels/first_root.h"
+#include "field/trace/kernels/block_search.h"
+#include "field/trace/kernels/packet.h"
 #include "field/trace/kernels/walk.h"
 #include "field/trace/kernels/points.h"
+#include "field/trace/kernels/surface_starts.h"
 #include "field/trace/kernels/cube.h"
 #include "field/trace/kernels/moments.h"
 #include "field/trace/kernels/split.h"
@@ -33,9 +38,9 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root,    nullptr,       nullptr,        point_field,
-                                        walk,          cube_bounds,   far_moments,    far_split,
-                                        octant_bounds, strand_shares, strand_samples, add_strand};
+  static constexpr BlockKernels kernels{first_root,    roots_in_cell,  roots_between, point_field, surface_starts,
+                                        walk,          cube_bounds,    far_moments,   far_split,   octant_bounds,
+                                        strand_shares, strand_samples, add_strand};
   return kernels;
 }
 

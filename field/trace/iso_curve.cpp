@@ -36,7 +36,7 @@ std::vector<IsoTable> tables_for(const Correction& c, double first, double step,
 // Lagrange's polynomials for the four tables around a share; of one table, that one.
 struct IsoCurve::Place {
   std::span<const IsoTable> rows;
-  std::array<double, 4> weight{1}, slope{};
+  std::array<double, 4> weight{1};
 
   Place(const std::vector<IsoTable>& all, double share) : rows(all) {
     if (all.size() == 1) return;
@@ -45,8 +45,6 @@ struct IsoCurve::Place {
     rows = rows.subspan(static_cast<std::size_t>(begin), 4);
     const double a = at - begin, b = a - 1, c = a - 2, d = a - 3;
     weight = {b * c * d / -6, a * c * d / 2, a * b * d / -2, a * b * c / 6};
-    slope = {(c * d + b * d + b * c) / -6 * steps, (c * d + a * d + a * c) / 2 * steps,
-             (b * d + a * d + a * b) / -2 * steps, (b * c + a * c + a * b) / 6 * steps};
   }
   double nominal(double x, double y) const {
     double sum = 0;
@@ -80,6 +78,8 @@ IsoCurve::IsoCurve(const Correction& correction, double least, double most) : le
       steps_.insert(steps_.end(), {view.value[i], view.lower[i], view.value[next], view.lower[next]});
     }
     steps_.resize(views_.size() * 4 * static_cast<std::size_t>(stride_));
+    slopes_.insert(slopes_.end(), view.slope, view.slope + view.size);
+    slopes_.resize(views_.size() * static_cast<std::size_t>(stride_));
     u_begin_.push_back(view.u_begin);
     inverse_step_.push_back(view.inverse_step);
     sin_theta_.push_back(view.sin_theta);
@@ -94,6 +94,7 @@ IsoCurve::IsoCurve(const Correction& correction, double least, double most) : le
 AngleTables IsoCurve::tables() const {
   if (steps_.empty()) return {};
   return {.steps = steps_.data(),
+          .slopes = slopes_.data(),
           .u_begin = u_begin_.data(),
           .inverse_step = inverse_step_.data(),
           .sin_theta = sin_theta_.data(),
@@ -120,19 +121,6 @@ double IsoCurve::margin(double x, double y, double share) const {
     const auto [nominal, lower] = place.rows[i].margins(x, y);
     if (!std::isfinite(nominal)) return -std::numeric_limits<double>::infinity();
     sum += place.weight[i] * nominal - std::fabs(place.weight[i]) * (nominal - lower);
-  }
-  return sum;
-}
-
-IsoCurve::Gradient IsoCurve::gradient(double x, double y, double share) const {
-  const Place place(rows_, share);
-  Gradient sum{};
-  for (std::size_t i = 0; i < place.rows.size(); ++i) {
-    const Slope c = place.rows[i].gradient(x, y);
-    sum.x += place.weight[i] * c.x;
-    sum.y += place.weight[i] * c.y;
-    const double nominal = place.rows[i].nominal(x, y);
-    if (std::isfinite(nominal)) sum.share -= place.slope[i] * nominal;
   }
   return sum;
 }

@@ -14,7 +14,8 @@ namespace marrow {
 /// The tables of a range of angles, for equal steps of their share, one after the other, with what IsoTable::View tells
 /// of each. They have different numbers of entries.
 struct AngleTables {
-  const float* steps = nullptr;  ///< value, lower, and both of the next entry
+  const float* steps = nullptr;   ///< value, lower, and both of the next entry
+  const float* slopes = nullptr;  ///< IsoTable::View's
   /// Of each table; there are at least 16 numbers.
   const float *u_begin = nullptr, *inverse_step = nullptr, *sin_theta = nullptr, *cos_theta = nullptr;
   const float* last = nullptr;  ///< the number of its last entry
@@ -24,7 +25,6 @@ struct AngleTables {
 class IsoCurve {
  public:
   using View = IsoTable::View;
-  using Slope = IsoTable::Slope;
 
   /// For one angle.
   IsoCurve(const Correction&, double alpha);
@@ -44,13 +44,9 @@ class IsoCurve {
   double critical_field() const { return rows_.front().critical_field(); }
   bool two_sided() const { return rows_.front().two_sided(); }
 
-  /// V_lower(u) - v for the angle least + share (most - least); `share` in [0, 1].
+  /// V_lower(u) - v for the angle least + share (most - least), `share` in [0, 1]: in double what the kernels read
+  /// from tables().
   double margin(double x, double y, double share = 0) const;
-  /// Where C grows fastest, as IsoTable::gradient(), and in which proportion it grows with the share.
-  struct Gradient {
-    double x, y, share;
-  };
-  Gradient gradient(double x, double y, double share = 0) const;
 
   /// Of the only table, or the first.
   View view() const { return views_.front(); }
@@ -68,7 +64,7 @@ class IsoCurve {
   std::vector<IsoTable> rows_;
   std::vector<View> views_;
   // Of tables()
-  std::vector<float> steps_, u_begin_, inverse_step_, sin_theta_, cos_theta_, last_entry_;
+  std::vector<float> steps_, slopes_, u_begin_, inverse_step_, sin_theta_, cos_theta_, last_entry_;
   int stride_ = 0;
 };
 

@@ -67,6 +67,7 @@ IsoTable::IsoTable(const Correction& correction, double alpha, double turn, int 
 IsoTable::View IsoTable::view() const {
   return {.value = value_.data(),
           .lower = lower_.data(),
+          .slope = slope_.data(),
           .size = static_cast<int>(value_.size()),
           .u_begin = static_cast<float>(u_begin_),
           .inverse_step = static_cast<float>(1 / step_),
@@ -106,12 +107,6 @@ IsoTable::Margins IsoTable::margins(double x, double y) const {
   const double at = place(u_of(x, y)), v = v_of(x, y);
   if (is_beyond(at)) return {beyond(value_) - v, beyond(lower_) - v};
   return {on_lines(value_, at) - v, on_lines(lower_, at) - v};
-}
-
-// The residual V(u) - v falls where C grows: -d/dx = sin + V' cos, -d/dy = cos - V' sin.
-IsoTable::Slope IsoTable::gradient(double x, double y) const {
-  const double slope = on_lines(slope_, std::min(place(u_of(x, y)), static_cast<double>(value_.size()) - 1.001));
-  return {sin_ + slope * cos_, cos_ - slope * sin_};
 }
 
 double IsoTable::nominal(double x, double y) const {

@@ -29,6 +29,7 @@ class IsoTable {
   struct View {
     const float* value;  ///< V, nearest
     const float* lower;  ///< below V everywhere, between entries too
+    const float* slope;  ///< V' at the entries, from the exact partials of C
     int size;
     float u_begin, inverse_step;
     float sin_theta, cos_theta;
@@ -53,12 +54,6 @@ class IsoTable {
     double nominal, lower;
   };
   Margins margins(double x, double y) const;
-  /// The direction in which C grows fastest at a point of the curve, times a positive number: C_x and C_y in
-  /// proportion, from the exact partials at the entries of the table.
-  struct Slope {
-    double x, y;
-  };
-  Slope gradient(double x, double y) const;
   struct Point {
     double x, y;
   };

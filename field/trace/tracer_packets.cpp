@@ -79,9 +79,7 @@ void add_to(CellLog& log, const CellRoots& roots, std::size_t lane) {
 
 }  // namespace
 
-bool BlendTracer::traces_packets() const {
-  return state_->kernels.roots_in_cell != nullptr && (!state_->range || state_->strands);
-}
+bool BlendTracer::traces_packets() const { return !state_->range || state_->strands; }
 
 void BlendTracer::first_hits(const TracePart& part, const RayPacket& packet, LaneSet rays, bool any,
                              CellHits& out) const {

@@ -125,28 +125,71 @@ void EmbreeSurfaces::uncover_start(std::size_t solid, const Ray& ray, SurfaceHit
   }
 }
 
-std::optional<SurfaceHit> EmbreeSurfaces::hit_of(const PartHierarchy::Hit& found, const PlaneHit& behind,
-                                                 const Ray& ray) const {
-  SurfaceHit hit;
-  if (found.found) {
-    const PlacedSolid& placed = solids_[found.solid];
+// Of a hit that its solid has described.
+void EmbreeSurfaces::free_start(std::size_t solid, const Ray& ray, SurfaceHit& hit) const {
+  united_.free_start(solid, ray, hit);
+  if (united_.may_be_cut_off(solid) && is_cut_off(ray, hit)) uncover_start(solid, ray, hit);
+}
+
+// Hits of one solid that follow each other are described together.
+class EmbreeSurfaces::Describing {
+ public:
+  explicit Describing(const EmbreeSurfaces& surfaces) : surfaces_(surfaces) {}
+  Describing(const Describing&) = delete;
+  Describing& operator=(const Describing&) = delete;
+  ~Describing() { describe(); }
+
+  // The hit must stay where it is until this ends, and the ray, too.
+  void add(const PartHierarchy::Hit& found, const Ray& ray, SurfaceHit& hit) {
+    const PlacedSolid& placed = surfaces_.solids_[found.solid];
     hit.t = found.t;
     hit.position = ray.at(found.t);
     hit.object = placed.object;
-    placed.solid->describe(found.element, found.place, ray, hit);
-    united_.free_start(found.solid, ray, hit);
-    if (united_.may_be_cut_off(found.solid) && is_cut_off(ray, hit)) uncover_start(found.solid, ray, hit);
-    return hit;
+    if (found.solid != solid_ || count_ == waiting_.size()) describe();
+    solid_ = found.solid;
+    waiting_[count_++] = {found.element, found.place, &ray, &hit};
   }
-  const auto& [plane, t] = behind;
-  if (plane == nullptr) return {};
+
+ private:
+  void describe() {
+    if (count_ == 0) return;
+    const auto hits = std::span(waiting_).first(count_);
+    surfaces_.solids_[solid_].solid->describe(hits);
+    for (const HitToDescribe& h : hits) surfaces_.free_start(solid_, *h.ray, *h.hit);
+    count_ = 0;
+  }
+
+  const EmbreeSurfaces& surfaces_;
+  std::size_t solid_ = 0;
+  std::array<HitToDescribe, 16> waiting_;
+  std::size_t count_ = 0;
+};
+
+std::optional<SurfaceHit> EmbreeSurfaces::hit_of(const PartHierarchy::Hit& found, const PlaneHit& behind,
+                                                 const Ray& ray) const {
+  std::optional<SurfaceHit> hit;
+  describe(std::span(&found, 1), std::span(&behind, 1), std::span(&ray, 1), std::span(&hit, 1));
+  return hit;
+}
+
+void EmbreeSurfaces::describe(std::span<const PartHierarchy::Hit> found, std::span<const PlaneHit> behind,
+                              std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits) const {
+  Describing describing(*this);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    hits[i].reset();
+    if (found[i].found) describing.add(found[i], rays[i], hits[i].emplace());
+    else if (!behind.empty() && behind[i].plane != nullptr) describe(behind[i], rays[i], hits[i].emplace());
+  }
+}
+
+void EmbreeSurfaces::describe(const PlaneHit& of, const Ray& ray, SurfaceHit& hit) {
+  const auto& [plane, t] = of;
   hit.t = t;
   hit.position = ray.at(t);
   hit.normal = dot(plane->normal, ray.direction) <= 0 ? plane->normal : -plane->normal;
   hit.outside = lifted(hit.position, plane->point, hit.normal);
   hit.object = plane->object;
   hit.material = plane->material;
-  return hit;
 }
 
 // Of a ray that begins inside only whole elements tell, and of one that is inside several solids these one by one.
@@ -202,10 +245,8 @@ void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::option
   const BeforePlanes before(*this, rays);
   std::vector<PartHierarchy::Hit> found(rays.size());
   stream_first_hits(finest(), before.rays, found, {});
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    found[i] = asked_again(found[i], before.rays[i], nullptr);
-    hits[i] = hit_of(found[i], before.plane(i), rays[i]);
-  }
+  for (std::size_t i = 0; i < rays.size(); ++i) found[i] = asked_again(found[i], before.rays[i], nullptr);
+  describe(found, before.planes(), rays, hits);
 }
 
 void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits,
@@ -219,8 +260,8 @@ void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::option
   for (std::size_t i = 0; i < rays.size(); ++i) {
     found[i] = asked_again(found[i], before.rays[i], &visits[i]);
     records[i] = record_of(visits[i], found[i].undecided, std::min({found[i].t, before.plane(i).t, rays[i].t_max}));
-    hits[i] = hit_of(found[i], before.plane(i), rays[i]);
   }
+  describe(found, before.planes(), rays, hits);
 }
 
 void EmbreeSurfaces::occluded(std::span<const Ray> rays, std::span<std::uint8_t> hidden) const {

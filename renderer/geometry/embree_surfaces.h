@@ -66,6 +66,7 @@ class EmbreeSurfaces final : public Surfaces {
     BeforePlanes(const BeforePlanes&) = delete;
     BeforePlanes& operator=(const BeforePlanes&) = delete;
     PlaneHit plane(std::size_t ray) const { return planes_.empty() ? PlaneHit{} : planes_[ray]; }
+    std::span<const PlaneHit> planes() const { return planes_; }
     std::span<const Ray> rays;
 
    private:
@@ -78,7 +79,13 @@ class EmbreeSurfaces final : public Surfaces {
   const PartHierarchy& finest() const { return *finest_.load(std::memory_order_acquire); }
   bool is_cut_off(const Ray&, const SurfaceHit&) const;
   void uncover_start(std::size_t solid, const Ray&, SurfaceHit&) const;
-  std::optional<SurfaceHit> hit_of(const PartHierarchy::Hit&, const PlaneHit&, const Ray&) const;
+  void free_start(std::size_t solid, const Ray&, SurfaceHit&) const;
+  std::optional<SurfaceHit> hit_of(const PartHierarchy::Hit&, const PlaneHit& behind, const Ray&) const;
+  // `behind`: the planes of all rays, or none at all.
+  void describe(std::span<const PartHierarchy::Hit>, std::span<const PlaneHit> behind, std::span<const Ray>,
+                std::span<std::optional<SurfaceHit>>) const;
+  static void describe(const PlaneHit&, const Ray&, SurfaceHit&);
+  class Describing;
 
   std::vector<PlacedSolid> solids_;
   std::vector<PlacedPlane> planes_;

@@ -145,13 +145,24 @@ std::vector<SolidPart> FieldSolid::parts() const {
   return parts;
 }
 
-void FieldSolid::describe(std::size_t, const void* place, const Ray&, SurfaceHit& hit) const {
-  const Vec3d p = in_world_ ? hit.position : local_from_world_.point(hit.position);
-  const SurfacePoint surface = tracer_->surface_at(*static_cast<const Block*>(place), p);
-  hit.normal = in_world_ ? surface.normal : normalize(local_from_world_.transposed(surface.normal));
-  hit.outside = in_world_ ? surface.outside : world_from_local_.point(surface.outside);
-  const MaterialId own = strongest_material(tracer_->field(), p);
-  hit.material = own.valid() ? own : material_;
+void FieldSolid::describe(std::span<const HitToDescribe> hits) const {
+  constexpr std::size_t most = RayPacket::size;
+  for (; hits.size() > most; hits = hits.subspan(most)) describe(hits.first(most));
+  std::array<SurfaceQuery, most> asked;
+  std::array<SurfacePoint, most> found;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const Vec3d& position = hits[i].hit->position;
+    asked[i] = {static_cast<const Block*>(hits[i].place), in_world_ ? position : local_from_world_.point(position)};
+  }
+  tracer_->surfaces_at(std::span(asked).first(hits.size()), std::span(found).first(hits.size()));
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    SurfaceHit& hit = *hits[i].hit;
+    const auto& [normal, outside] = found[i];
+    hit.normal = in_world_ ? normal : normalize(local_from_world_.transposed(normal));
+    hit.outside = in_world_ ? outside : world_from_local_.point(outside);
+    const MaterialId own = strongest_material(tracer_->field(), asked[i].position);
+    hit.material = own.valid() ? own : material_;
+  }
 }
 
 }  // namespace marrow

@@ -26,7 +26,7 @@ class FieldSolid final : public Solid {
   std::optional<double> hit_in_part(const SolidPart&, const Ray&, bool any, ElementLog&) const override;
   bool traces_packets() const override { return tracer_->traces_packets(); }
   void hits_in_part(const SolidPart&, const RayPacket&, LaneSet lanes, bool any, PacketLog&) const override;
-  void describe(std::size_t, const void* place, const Ray&, SurfaceHit&) const override;
+  void describe(std::span<const HitToDescribe>) const override;
   std::size_t primitive_count() const override { return tracer_->field().size(); }
   std::size_t bytes() const override { return tracer_->statistics().bytes; }
   const BlendTracer& tracer() const { return *tracer_; }

@@ -74,12 +74,14 @@ std::optional<double> MeshSolid::hit(std::size_t element, const Ray& ray, bool, 
   return t;
 }
 
-void MeshSolid::describe(std::size_t element, const void*, const Ray& ray, SurfaceHit& hit) const {
-  const auto [a, b, c] = corners(element);
-  const UnitVec3 n = normalize(cross(b - a, c - a));
-  hit.normal = dot(n, ray.direction) <= 0 ? n : -n;
-  hit.outside = lifted(hit.position, a, hit.normal);
-  hit.material = material_;
+void MeshSolid::describe(std::span<const HitToDescribe> hits) const {
+  for (const auto& [element, place, ray, hit] : hits) {
+    const auto [a, b, c] = corners(element);
+    const UnitVec3 n = normalize(cross(b - a, c - a));
+    hit->normal = dot(n, ray->direction) <= 0 ? n : -n;
+    hit->outside = lifted(hit->position, a, hit->normal);
+    hit->material = material_;
+  }
 }
 
 std::size_t MeshSolid::bytes() const {

@@ -15,7 +15,7 @@ class MeshSolid final : public Solid {
   Box3 extent() const override;
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
   /// The normal is that of the triangle, on the side the ray comes from.
-  void describe(std::size_t, const void* place, const Ray&, SurfaceHit&) const override;
+  void describe(std::span<const HitToDescribe>) const override;
   std::size_t primitive_count() const override { return element_count(); }
   std::size_t bytes() const override;
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "field/base/id.h"
@@ -44,6 +45,14 @@ struct SolidPart {
   int slot = 0;
 };
 
+/// A hit of which not all is known yet; `place` as Solid::hit() told it.
+struct HitToDescribe {
+  std::size_t element;
+  const void* place;
+  const Ray* ray;
+  SurfaceHit* hit;
+};
+
 /// Immutable; safe to use from many threads. All rays and points are in world coordinates.
 class Solid {
  public:
@@ -69,8 +78,8 @@ class Solid {
   virtual bool traces_packets() const { return false; }
   /// hit_in_part() for the rays of `lanes`, to the same bits; `log` is of these lanes only.
   virtual void hits_in_part(const SolidPart&, const RayPacket&, LaneSet lanes, bool any, PacketLog& log) const;
-  /// Fills normal, outside and material of a hit whose position is known; `place` as hit() told it.
-  virtual void describe(std::size_t element, const void* place, const Ray&, SurfaceHit&) const = 0;
+  /// Fills normal, outside and material of hits whose positions are known.
+  virtual void describe(std::span<const HitToDescribe>) const = 0;
   virtual std::size_t primitive_count() const = 0;
   virtual std::size_t bytes() const = 0;
 };

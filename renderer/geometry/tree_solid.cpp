@@ -18,12 +18,14 @@ std::optional<double> TreeSolid::hit(std::size_t element, const Ray& ray, bool a
   return found->t;
 }
 
-void TreeSolid::describe(std::size_t element, const void*, const Ray& ray, SurfaceHit& hit) const {
-  const SurfacePoint surface = tracer_.surface_at(element, hit.position, ray.direction);
-  hit.normal = surface.normal;
-  hit.outside = surface.outside;
-  const MaterialId own = tracer_.material_at(element, hit.position);
-  hit.material = own.valid() ? own : material_;
+void TreeSolid::describe(std::span<const HitToDescribe> hits) const {
+  for (const auto& [element, place, ray, hit] : hits) {
+    const SurfacePoint surface = tracer_.surface_at(element, hit->position, ray->direction);
+    hit->normal = surface.normal;
+    hit->outside = surface.outside;
+    const MaterialId own = tracer_.material_at(element, hit->position);
+    hit->material = own.valid() ? own : material_;
+  }
 }
 
 FieldSample TreeSolid::sample(const Vec3d& p) const {

@@ -19,7 +19,7 @@ class TreeSolid final : public Solid {
   Box3 reach() const override { return tracer_.bounds(); }
   FieldSample sample(const Vec3d&) const override;
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
-  void describe(std::size_t, const void*, const Ray&, SurfaceHit&) const override;
+  void describe(std::span<const HitToDescribe>) const override;
   std::size_t primitive_count() const override;
   std::size_t bytes() const override { return tracer_.bytes(); }
 

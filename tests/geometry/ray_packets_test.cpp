@@ -7,6 +7,7 @@
 #include "renderer/geometry/mesh_solid.h"
 #include "renderer/geometry/tree_solid.h"
 #include "tests/geometry/scene_of_solids.h"
+#include "tests/trace/instruction_sets.h"
 
 namespace marrow::test {
 namespace {
@@ -28,17 +29,18 @@ MeshShape shards(Random& random) {
 
 // Everything that rays can meet: blends in the world's coordinates and in their own, one at several places, a general
 // tree, triangles, planes.
-std::unique_ptr<EmbreeSurfaces> everything(Random& random, const BlendField& blend, const std::string& config) {
+std::unique_ptr<EmbreeSurfaces> everything(Random& random, const BlendField& blend, const TraceOptions& options,
+                                           const std::string& config) {
   const Affine bend = Affine::translate(random.vector(1)) *
                       Affine::rotate(normalize(random_direction(random)), random.between(0, 3)) *
                       Affine::scale({random.between(0.4, 1), random.between(0.8, 1.6), -random.between(0.5, 1.3)});
   std::vector<PlacedSolid> solids;
   const auto add = [&](std::unique_ptr<Solid> solid) { solids.push_back({std::move(solid), ObjectId{solids.size()}}); };
-  auto first = std::move(*FieldSolid::make(placed(blend), MaterialId{1}, {}));
+  auto first = std::move(*FieldSolid::make(placed(blend), MaterialId{1}, options));
   add(first->placed_again(placed(blend, bend), MaterialId{2}));
   add(first->placed_again(placed(blend, Affine::translate(random.vector(2))), MaterialId{3}));
   add(std::move(first));
-  add(std::move(*FieldSolid::make(placed(random_scene(random, {3, 1.2}, 3), bend), MaterialId{4}, {})));
+  add(std::move(*FieldSolid::make(placed(random_scene(random, {3, 1.2}, 3), bend), MaterialId{4}, options)));
   add(std::move(*TreeSolid::make(tree_of(placed(random_scene(random, {4, 0.7}, 2))), MaterialId{5})));
   add(std::make_unique<MeshSolid>(shards(random), MaterialId{6}));
   std::vector<PlacedPlane> planes{{{0, -2, 0}, UnitVec3::unchecked({0, 1, 0}), MaterialId{7}, ObjectId{solids.size()}},
@@ -152,14 +154,15 @@ struct Twins {
   std::unique_ptr<EmbreeSurfaces> surfaces, whole;
 };
 Twins twins(Random& random, const BlendField& blend, const std::string& isa) {
-  const std::string config = "threads=1,max_isa=" + isa;
+  const std::string config = "threads=1,max_isa=" + (isa == "sse4" ? "sse4.2" : isa);
   Random again = random;
-  return {everything(random, blend, config), everything(again, blend, config)};
+  return {everything(random, blend, {.instruction_set = isa}, config),
+          everything(again, blend, {.instruction_set = isa}, config)};
 }
 
-// Packets of sixteen, eight and four in Embree, or single rays, and from whole elements down to single cells.
+// Packets of sixteen, eight and four here and in Embree, or single rays, and from whole elements down to single cells.
 TEST(RayPackets, EqualSingleRays) {
-  for (const std::string isa : {"sse4.2", "avx2", "avx512"}) {
+  for (const std::string& isa : sets_here()) {
     Random random(131);
     Comparison camera, faces, shadows, mixed, few;
     const BlendField blend = random_scene(random, {4, contact_alpha(4)}, 5);
@@ -201,7 +204,7 @@ Rays near_an_axis(Random& random) {
 }
 
 TEST(RayPackets, EqualSingleRaysNearAnAxis) {
-  for (const std::string isa : {"sse4.2", "avx2", "avx512"}) {
+  for (const std::string& isa : sets_here()) {
     Random random(133);
     Comparison all;
     const BlendField blend = random_scene(random, {4, 0.3}, 5);

@@ -125,6 +125,7 @@ TEST_P(Packets, FindWhatSingleRaysFind) {
     auto made = BlendTracer::make(blend, {.instruction_set = set});
     ASSERT_TRUE(made);
     const BlendTracer& tracer = **made;
+    ASSERT_TRUE(tracer.traces_packets());
     for (int i = 0; i < 500; ++i) first_hit(tracer, any_ray(random, blend));  // divides space
     Compared count;
     for (int i = 0; i < 16; ++i) {

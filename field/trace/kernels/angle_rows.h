@@ -1,12 +1,9 @@
-// Reading the tables of a range of angles, for one ray or sixteen (iso_curve.h). Part of block_kernels_<set>.cpp.
+// Reading the tables of a range of angles, for one ray or a packet (iso_curve.h). Part of block_kernels_<set>.cpp.
 
 // What is known of each table.
 inline float of_row(const float* numbers, int, int row) { return numbers[row]; }
-inline V16 of_row(const float* numbers, int count, Index16 row) {
-  if (count > lanes) return gather(numbers, row);
-  V16 all;
-  __builtin_memcpy(&all, numbers, sizeof all);
-  return __builtin_shuffle(all, row);
+inline PacketFloat of_row(const float* numbers, int count, PacketInt row) {
+  return count > lanes ? gather(numbers, row) : picked(numbers, row);
 }
 
 // From one entry of a table to the next.
@@ -19,28 +16,23 @@ inline TableStep<float> step_at(const float* steps, int entry) {
   return {s[0], s[1], s[2], s[3]};
 }
 // Four numbers at a time for each lane: gathers take a machine many times as long.
-inline TableStep<V16> step_at(const float* steps, Index16 entry) {
-  V16 part[4];  // lanes 4 k + i in quarter k of part i
+inline TableStep<PacketFloat> step_at(const float* steps, PacketInt entry) {
+  constexpr int quarters = packet_lanes / 4;
+  PacketFloat rows[4], columns[4];  // lanes 4 k + i in quarter k of row i
   for (int i = 0; i < 4; ++i) {
-    V4 quarter[4];
-    for (int k = 0; k < 4; ++k) quarter[k] = load4(steps + 4 * static_cast<long>(entry[4 * k + i]));
-    __builtin_memcpy(&part[i], quarter, sizeof part[i]);
+    V4 quarter[quarters];
+    for (int k = 0; k < quarters; ++k) quarter[k] = load4(steps + 4 * static_cast<long>(entry[4 * k + i]));
+    __builtin_memcpy(&rows[i], quarter, sizeof rows[i]);
   }
-  const auto low = [](V16 a, V16 b) {
-    return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
-  };
-  const auto high = [](V16 a, V16 b) {
-    return __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31);
-  };
-  const V16 a = low(part[0], part[2]), b = low(part[1], part[3]), c = high(part[0], part[2]),
-            d = high(part[1], part[3]);
-  return {low(a, b), high(a, b), low(c, d), high(c, d)};
+  transpose_quarters(rows, columns);
+  return {columns[0], columns[1], columns[2], columns[3]};
 }
 
 // A place in one of the tables, which may be another one in each lane.
 template <class F>
 struct RowPlace {
   F sine, cosine, v, inverse_step, last, at, fraction;
+  IntOf<F> entry;
   TableStep<F> step;
 
   RowPlace(const AngleTables& tables, IntOf<F> row, F x, F y)
@@ -53,12 +45,18 @@ struct RowPlace {
     const F from = max_of(at, 0.0F);
     const IntOf<F> index = whole_part(min_of(from, last - 0.5F));
     fraction = from - to_float(index);
-    step = step_at(tables.steps, row * tables.stride + index);
+    entry = row * tables.stride + index;
+    step = step_at(tables.steps, entry);
   }
   F slope() const { return step.next_value - step.value; }
   F value() const { return step.value + slope() * fraction; }
   F lower() const { return step.lower + (step.next_lower - step.lower) * fraction; }
   MaskOf<F> beyond() const { return at >= last; }
+  // Of the curve itself, from its slopes at the entries; level beyond the last one.
+  F exact_slope(const AngleTables& tables) const {
+    const F low = gather(tables.slopes, entry);
+    return low + (gather(tables.slopes + 1, entry) - low) * min_of(fraction, 1.0F);
+  }
 };
 
 // All that the tables give is cubic in the share of the range, through the four around it.

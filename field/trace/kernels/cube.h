@@ -27,7 +27,7 @@ struct CubeSummer {
       a[3] += k2 * dy;
       a[4] += k2 * dz;
       a[5] += w0 * inverse_power<Exponent>(shrink * shrink, exponent);
-      nearest = larger(nearest, share > 0.0F ? q : V16{});
+      nearest = larger(nearest, select(share > 0.0F, q, V16{}));
     }
     float s[16];
     sum_lanes(a, s);

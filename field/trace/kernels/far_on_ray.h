@@ -55,7 +55,7 @@ inline V4 far_at(const FieldLevel& level, float x, float y, float z) {
   return far_polynomial(level, AllFour{level.far}, x, y, z);
 }
 
-// A value and its derivative along a ray. Value: V4, all four of one ray; V16, one of each of sixteen.
+// A value and its derivative along a ray. Value: V4, all four of one ray; PacketFloat, one of each ray of a packet.
 template <class Value>
 struct FarSlope {
   Value value, slope;
@@ -67,7 +67,8 @@ struct OnRay {
   F at, slope;
 };
 inline Probe probe_of(const OnRay<float> (&p)[3]) {
-  return {splat(p[0].at), splat(p[1].at), splat(p[2].at), splat(p[0].slope), splat(p[1].slope), splat(p[2].slope)};
+  return {Native{} + p[0].at,    Native{} + p[1].at,    Native{} + p[2].at,
+          Native{} + p[0].slope, Native{} + p[1].slope, Native{} + p[2].slope};
 }
 template <class Coefficients, class F>
 inline auto operator*(const Coefficients& c, const OnRay<F>& x) {
@@ -98,13 +99,13 @@ inline void add_far(const FieldLevel& level, const OnRay<float> (&p)[3], RaySums
   }
 }
 
-inline void add_far(const FieldLevel& level, const OnRay<V16> (&p)[3], RaySums<V16>& s) {
+inline void add_far(const FieldLevel& level, const OnRay<PacketFloat> (&p)[3], RaySums<PacketFloat>& s) {
   const auto part = [&](int k) { return far_polynomial(level, OneOfFour{level.far + k}, p[0], p[1], p[2]); };
-  const FarSlope<V16> f = part(0);
+  const FarSlope<PacketFloat> f = part(0);
   s.f += f.value;
   s.df += f.slope;
   for (int i = 0; i < 3; ++i) {
-    const FarSlope<V16> g = part(i + 1);
+    const FarSlope<PacketFloat> g = part(i + 1);
     s.g[i] += g.value;
     s.dg[i] += g.slope;
   }

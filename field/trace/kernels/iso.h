@@ -21,6 +21,11 @@ struct CurvePlace {
     const F low = gather(table, index), difference = gather(table + 1, index) - low;
     return {low + difference * fraction, difference};
   }
+  // As in(), and level beyond the last entry.
+  F within(const float* table) const {
+    const F low = gather(table, index);
+    return low + (gather(table + 1, index) - low) * min_of(fraction, 1.0F);
+  }
 };
 
 template <class F>

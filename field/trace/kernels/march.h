@@ -7,9 +7,9 @@ inline void sum_sources(const FieldLevel& level, int degree, const OnRay<float> 
   nearest = largest_lane(lanes_nearest);
 }
 
-inline void sum_sources(const FieldLevel& level, int degree, const OnRay<V16> (&p)[3], const Ray16& rays,
-                        Index16 active, RaySums<V16>& sums, V16& nearest) {
-  const V16 at[3] = {p[0].at, p[1].at, p[2].at};
+inline void sum_sources(const FieldLevel& level, int degree, const OnRay<PacketFloat> (&p)[3], const PacketRays& rays,
+                        PacketInt active, RaySums<PacketFloat>& sums, PacketFloat& nearest) {
+  const PacketFloat at[3] = {p[0].at, p[1].at, p[2].at};
   for_each_list(level, degree, PacketSummer{at, rays, lane_bits(active), nearest, sums});
 }
 

@@ -85,7 +85,7 @@ inline void add_octant(const float* group, int groups, int exponent, const float
     const V16 wx = c[0] - load(group), wy = c[1] - load(group + 16), wz = c[2] - load(group + 32);
     const V16 ax = load(group + 48), ay = load(group + 64), az = load(group + 80);
     const V16 along = (wx * ax + wy * ay + wz * az) * load(group + 96);  // 1 / length^2
-    const V16 t = along < 0.0F ? V16{} : along > 1.0F ? splat(1) : along;
+    const V16 t = select(along < 0.0F, V16{}, select(along > 1.0F, splat(1), along));
     const V16 dx = wx - ax * t, dy = wy - ay * t, dz = wz - az * t;
     const V16 share = load(group + 112), taper = load(group + 128), tau = load(group + 144), size = load(group + 160),
               reach = load(group + 176);
@@ -93,19 +93,19 @@ inline void add_octant(const float* group, int groups, int exponent, const float
     const V16 nearest = d - (radius + reach + slack), high = tau / larger(nearest, splat(1e-4F));
     const V16 field = share * inverse_power<Exponent>(high * high, exponent);
     // All of a piece is within its length of the nearest point, and nowhere thinner than its thin end.
-    const V16 thin = tau - (taper < 0.0F ? V16{} - taper : taper), middle = tau / larger(d, 0.5F * tau);
+    const V16 thin = tau - select(taper < 0.0F, V16{} - taper, taper), middle = tau / larger(d, 0.5F * tau);
     const V16 low = thin / (d + size + radius + slack);
     const V16 weight = share * inverse_power<Exponent>(middle * middle, exponent);
     a[0] += field;
     a[1] += field * high;
-    a[2] += thin > 0.0F ? share * (tau / thin) * inverse_power<Exponent>(low * low, exponent) : V16{};
+    a[2] += select(thin > 0.0F, share * (tau / thin) * inverse_power<Exponent>(low * low, exponent), V16{});
     a[3] += weight;
     a[4] += weight * tau;
-    touching = larger(touching, share > 0.0F ? 1e-4F - nearest : V16{} - 1.0F);
+    touching = larger(touching, select(share > 0.0F, 1e-4F - nearest, splat(-1)));
     // Farther away than this a piece is no more than a hundredth of the field, and its own surface ends before.
     const V16 thick = larger(load(group + 192), splat(1e-9F));
-    const V16 thinness_here = nearest < 4.0F * thick ? 1.0F / thick : V16{};
-    thinness = larger(thinness, share > 0.0F ? thinness_here : V16{});
+    const V16 thinness_here = select(nearest < 4.0F * thick, 1.0F / thick, V16{});
+    thinness = larger(thinness, select(share > 0.0F, thinness_here, V16{}));
   }
   float s[16];
   sum_lanes(a, s);

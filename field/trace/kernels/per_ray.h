@@ -1,12 +1,19 @@
-// What is written once for one ray and for a packet of sixteen: F is float, or V16 with a ray in each lane. Part of
-// block_kernels_<set>.cpp.
+// What is written once for one ray and for a packet of several: F is float, or PacketFloat with a ray in each lane.
+// Part of block_kernels_<set>.cpp.
 //
-// A lane of a packet goes through the operations of a single ray in the same order, so both give the same bits. What
-// one ray does behind an `if`, a packet does for all lanes when any of them needs it, and keeps where a mask is set.
+// A lane of a packet goes through the operations of a single ray in the same order, so both give the same bits,
+// however many lanes there are. What one ray does behind an `if`, a packet does for all lanes when any of them needs
+// it, and keeps where a mask is set.
 
-// Sixteen rays in the coordinates of a block, and memory for one search on them at a time.
-struct Ray16 {
-  V16 origin[3], direction[3];
+// As many rays as a register has lanes.
+inline constexpr int packet_lanes = native_lanes;
+inline constexpr unsigned all_lane_bits = (1U << packet_lanes) - 1;
+using PacketFloat = Native;
+using PacketInt = NativeInt;
+
+// They in the coordinates of a block, and memory for one search on them at a time.
+struct PacketRays {
+  PacketFloat origin[3], direction[3];
   PacketMemory* memory;
 };
 
@@ -19,10 +26,10 @@ struct PerRay<float> {
   using Ray = LocalRay;
 };
 template <>
-struct PerRay<V16> {
-  using Mask = Index16;  // 0 or -1
-  using Int = Index16;
-  using Ray = Ray16;
+struct PerRay<PacketFloat> {
+  using Mask = PacketInt;  // 0 or -1
+  using Int = PacketInt;
+  using Ray = PacketRays;
 };
 template <class F>
 using MaskOf = typename PerRay<F>::Mask;
@@ -31,49 +38,34 @@ using IntOf = typename PerRay<F>::Int;
 template <class F>
 using RayOf = typename PerRay<F>::Ray;
 
-// A bit for each lane that is set.
-inline unsigned lane_bits(Index16 mask) {
-#if defined(__AVX512DQ__)
-  return static_cast<unsigned>(__builtin_ia32_cvtd2mask512(mask)) & 0xffffU;
-#else
-  const V16 signs = reinterpret_cast<V16>(mask);
-  unsigned bits = 0;
-  for (int k = 0; k < 4; ++k) {
-    V4 part;
-    __builtin_memcpy(&part, reinterpret_cast<const char*>(&signs) + 16 * k, sizeof part);
-    bits |= static_cast<unsigned>(__builtin_ia32_movmskps(part)) << (4 * k);
-  }
-  return bits;
-#endif
-}
 inline bool any(bool mask) { return mask; }
-inline bool any(Index16 mask) { return lane_bits(mask) != 0; }
+inline bool any(PacketInt mask) { return lane_bits(mask) != 0; }
 
 template <class T>
 inline T select(bool mask, const T& a, const T& b) {
   return mask ? a : b;
 }
-inline V16 select(Index16 mask, V16 a, V16 b) { return mask ? a : b; }
-inline Index16 select(Index16 mask, Index16 a, Index16 b) { return mask ? a : b; }
 
 // to = from where the mask is set.
 template <class T>
 inline void assign(bool mask, T& to, const T& from) {
   if (mask) to = from;
 }
-inline void assign(Index16 mask, V16& to, V16 from) { to = mask ? from : to; }
-inline void assign(Index16 mask, Index16& to, Index16 from) { to = mask ? from : to; }
+inline void assign(PacketInt mask, PacketFloat& to, PacketFloat from) { to = select(mask, from, to); }
+inline void assign(PacketInt mask, PacketInt& to, PacketInt from) { to = select(mask, from, to); }
 
 inline void count(bool mask, int& number) { number += mask ? 1 : 0; }
-inline void count(Index16 mask, Index16& number) { number -= mask; }
+inline void count(PacketInt mask, PacketInt& number) { number -= mask; }
 
-inline V16 max_of(V16 a, V16 b) { return larger(a, b); }
-inline V16 max_of(V16 a, float b) { return larger(a, splat(b)); }
-inline V16 max_of(float a, V16 b) { return larger(splat(a), b); }
-inline V16 min_of(V16 a, V16 b) { return smaller(a, b); }
-inline V16 min_of(V16 a, float b) { return smaller(a, splat(b)); }
-inline V16 min_of(float a, V16 b) { return smaller(splat(a), b); }
-inline V16 abs_of(V16 a) { return reinterpret_cast<V16>(reinterpret_cast<Index16>(a) & 0x7fffffff); }
+inline PacketFloat max_of(PacketFloat a, PacketFloat b) { return larger(a, b); }
+inline PacketFloat max_of(PacketFloat a, float b) { return larger(a, PacketFloat{} + b); }
+inline PacketFloat max_of(float a, PacketFloat b) { return larger(PacketFloat{} + a, b); }
+inline PacketFloat min_of(PacketFloat a, PacketFloat b) { return smaller(a, b); }
+inline PacketFloat min_of(PacketFloat a, float b) { return smaller(a, PacketFloat{} + b); }
+inline PacketFloat min_of(float a, PacketFloat b) { return smaller(PacketFloat{} + a, b); }
+inline PacketFloat abs_of(PacketFloat a) {
+  return reinterpret_cast<PacketFloat>(reinterpret_cast<PacketInt>(a) & 0x7fffffff);
+}
 
 template <class F>
 inline F all_lanes(float v) {
@@ -82,44 +74,58 @@ inline F all_lanes(float v) {
 
 // Towards 0.
 inline int whole_part(float v) { return static_cast<int>(v); }
-inline Index16 whole_part(V16 v) { return __builtin_convertvector(v, Index16); }
+inline PacketInt whole_part(PacketFloat v) { return __builtin_convertvector(v, PacketInt); }
 inline float to_float(int v) { return static_cast<float>(v); }
-inline V16 to_float(Index16 v) { return __builtin_convertvector(v, V16); }
+inline PacketFloat to_float(PacketInt v) { return __builtin_convertvector(v, PacketFloat); }
 
 inline float gather(const float* table, int index) { return table[index]; }
 template <class V, class T>
-inline V gather_lanes(const T* table, Index16 index) {
+inline V gather_lanes(const T* table, PacketInt index) {
   V v;
-  for (int i = 0; i < lanes; ++i) v[i] = table[index[i]];
+  for (int i = 0; i < packet_lanes; ++i) v[i] = table[index[i]];
   return v;
 }
-inline V16 gather(const float* table, Index16 index) {
+inline PacketFloat gather(const float* table, PacketInt index) {
 #if defined(__AVX512F__)
-  return __builtin_ia32_gathersiv16sf(V16{}, table, index, -1, 4);
+  return __builtin_ia32_gathersiv16sf(PacketFloat{}, table, index, -1, 4);
+#elif defined(__AVX2__)
+  return __builtin_ia32_gathersiv8sf(PacketFloat{}, table, index, reinterpret_cast<PacketFloat>(PacketInt{} - 1), 4);
 #else
-  return gather_lanes<V16>(table, index);
+  return gather_lanes<PacketFloat>(table, index);
 #endif
 }
 // Of sixteen numbers.
 inline int picked(const int (&table)[16], int index) { return table[index]; }
-inline Index16 picked(const int (&table)[16], Index16 index) {
-  Index16 all;
+template <class V, class T>
+inline V picked_lanes(const T* table, PacketInt index) {
+#if defined(__AVX512F__)
+  V all;
   __builtin_memcpy(&all, table, sizeof all);
   return __builtin_shuffle(all, index);
+#elif defined(__AVX2__)
+  V low, high;
+  __builtin_memcpy(&low, table, sizeof low);
+  __builtin_memcpy(&high, table + packet_lanes, sizeof high);
+  return __builtin_shuffle(low, high, index);
+#else
+  return gather_lanes<V>(table, index);
+#endif
 }
+inline PacketInt picked(const int (&table)[16], PacketInt index) { return picked_lanes<PacketInt>(table, index); }
+inline PacketFloat picked(const float* table, PacketInt index) { return picked_lanes<PacketFloat>(table, index); }
 
 inline int bits_of(float v) {
   int bits;
   __builtin_memcpy(&bits, &v, sizeof bits);
   return bits;
 }
-inline Index16 bits_of(V16 v) { return reinterpret_cast<Index16>(v); }
+inline PacketInt bits_of(PacketFloat v) { return reinterpret_cast<PacketInt>(v); }
 inline float from_bits(int bits) {
   float v;
   __builtin_memcpy(&v, &bits, sizeof v);
   return v;
 }
-inline V16 from_bits(Index16 bits) { return reinterpret_cast<V16>(bits); }
+inline PacketFloat from_bits(PacketInt bits) { return reinterpret_cast<PacketFloat>(bits); }
 
 // q^(-1/k) for q > 0 to some 1e-5: a guess from the exponent bits, then Newton's iteration y (1 + (1 - q y^k) / k).
 // Root 0 in the template means known only at run time.

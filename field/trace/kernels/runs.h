@@ -10,9 +10,9 @@ class SlotBits {
     if (active) need(octant_of(layer));
     return bit_of(layer) != 0;
   }
-  Index16 at(const Index16 (&layer)[3], Index16 active) {
-    const Index16 octant = octant_of(layer), known = Index16{} + static_cast<int>(known_);
-    const Index16 unknown = active & ((known >> octant & 1) == 0);
+  PacketInt at(const PacketInt (&layer)[3], PacketInt active) {
+    const PacketInt octant = octant_of(layer), known = PacketInt{} + static_cast<int>(known_);
+    const PacketInt unknown = active & ((known >> octant & 1) == 0);
     for (unsigned left = lane_bits(unknown); left != 0; left &= left - 1) need(octant[__builtin_ctz(left)]);
     return bit_of(layer) != 0;
   }

@@ -58,15 +58,16 @@ struct SampleOf : SampleShare<Rule, F> {
 
 // The samples of some rays of a packet.
 template <Angle Rule>
-inline void assign(Index16 mask, SampleOf<Rule, V16>& to, const SampleOf<Rule, V16>& from) {
-  using Sample = SampleOf<Rule, V16>;
-  using Sums = RaySums<V16>;
-  for (V16 Sample::*part :
+inline void assign(PacketInt mask, SampleOf<Rule, PacketFloat>& to, const SampleOf<Rule, PacketFloat>& from) {
+  using Sample = SampleOf<Rule, PacketFloat>;
+  using Sums = RaySums<PacketFloat>;
+  for (PacketFloat Sample::*part :
        {&Sample::t, &Sample::y, &Sample::distance, &Sample::residual, &Sample::nominal, &Sample::margin, &Sample::raise,
         &Sample::slope, &Sample::v, &Sample::v_slope, &Sample::curve, &Sample::x_weight, &Sample::y_weight,
         &Sample::scaled, &Sample::scaled_slope})
     assign(mask, to.*part, from.*part);
-  for (V16 Sums::*part : {&Sums::f, &Sums::df, &Sums::second, &Sums::third}) assign(mask, to.s.*part, from.s.*part);
+  for (PacketFloat Sums::*part : {&Sums::f, &Sums::df, &Sums::second, &Sums::third})
+    assign(mask, to.s.*part, from.s.*part);
   for (int i = 0; i < 3; ++i) {
     assign(mask, to.s.g[i], from.s.g[i]);
     assign(mask, to.s.dg[i], from.s.dg[i]);

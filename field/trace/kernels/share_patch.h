@@ -60,45 +60,46 @@ struct Patches<float> {
 };
 
 template <>
-struct Patches<V16> {
-  const SharePatch* patch[lanes] = {};
-  Index16 key[3] = {}, shift{};
-  V16 column[floats_per_patch];  // what the patches hold, a ray in each lane
+struct Patches<PacketFloat> {
+  const SharePatch* patch[packet_lanes] = {};
+  PacketInt key[3] = {}, shift{};
+  PacketFloat column[floats_per_patch];  // what the patches hold, a ray in each lane
 
-  void find(const BlockView& block, Index16 rays, const Index16 (&layer)[3]) {
+  void find(const BlockView& block, PacketInt rays, const PacketInt (&layer)[3]) {
     // Neighbours are mostly in one part.
     while (any(rays)) {
       const int first = __builtin_ctz(lane_bits(rays));
       const int at[3] = {layer[0][first], layer[1][first], layer[2][first]};
       const SharePatch& found = block.patch(at);
       const int log2 = found.layers_log2;
-      Index16 here = rays;
+      PacketInt here = rays;
       for (int k = 0; k < 3; ++k) here &= layer[k] >> log2 == at[k] >> log2;
       for (unsigned left = lane_bits(here); left != 0; left &= left - 1) patch[__builtin_ctz(left)] = &found;
       for (int k = 0; k < 3; ++k) key[k] = select(here, layer[k] >> log2, key[k]);
-      shift = select(here, Index16{} + log2, shift);
+      shift = select(here, PacketInt{} + log2, shift);
       rays &= ~here;
     }
   }
-  Index16 hold(const Index16 (&layer)[3]) const {
+  PacketInt hold(const PacketInt (&layer)[3]) const {
     return (layer[0] >> shift == key[0]) & (layer[1] >> shift == key[1]) & (layer[2] >> shift == key[2]);
   }
   void load() {
     static constexpr SharePatch none{};
     for (int part = 0; part < floats_per_patch; part += lanes) {
-      V16 rows[lanes];
-      for (int lane = 0; lane < lanes; ++lane)
+      V16 rows[packet_lanes];
+      for (int lane = 0; lane < packet_lanes; ++lane)
         __builtin_memcpy(
             &rows[lane],
             reinterpret_cast<const char*>(patch[lane] != nullptr ? patch[lane] : &none) + part * sizeof(float),
             sizeof(V16));
-      transpose(rows);
-      for (int i = 0; i < lanes; ++i) column[part + i] = rows[i];
+      PacketFloat columns[lanes];
+      find_columns(rows, columns);
+      for (int i = 0; i < lanes; ++i) column[part + i] = columns[i];
     }
   }
-  V16 coefficient(int i) const { return column[i]; }
-  V16 center(int k) const { return column[SharePatch::coefficients + k]; }
-  V16 inverse_half() const { return column[SharePatch::coefficients + 3]; }
+  PacketFloat coefficient(int i) const { return column[i]; }
+  PacketFloat center(int k) const { return column[SharePatch::coefficients + k]; }
+  PacketFloat inverse_half() const { return column[SharePatch::coefficients + 3]; }
 };
 
 template <class F>

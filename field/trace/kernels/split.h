@@ -5,7 +5,7 @@
 template <int FarDegree>
 inline V16 series_tail(V16 q, int exponent, float first) {
   const V16 rest = 1.0F - q * (static_cast<float>(exponent + FarDegree + 1) / (FarDegree + 2));
-  return rest > 0.05F ? first * power_of(q, FarDegree + 1) / rest : V16{} - 1.0F;
+  return select(rest > 0.05F, first * power_of(q, FarDegree + 1) / rest, splat(-1));
 }
 
 struct FarLanes {
@@ -24,7 +24,7 @@ inline FarLanes far_lanes(const float* group, const FarQuery& query) {
   const V16 wx = c[0] - load(group), wy = c[1] - load(group + 16), wz = c[2] - load(group + 32);
   const V16 ax = load(group + 48), ay = load(group + 64), az = load(group + 80);
   const V16 along = (wx * ax + wy * ay + wz * az) * load(group + 96);
-  const V16 t = along < 0.0F ? V16{} : along > 1.0F ? splat(1) : along;
+  const V16 t = select(along < 0.0F, V16{}, select(along > 1.0F, splat(1), along));
   const V16 dx = wx - ax * t, dy = wy - ay * t, dz = wz - az * t;
   const V16 share = load(group + 112), taper = load(group + 128), tau = load(group + 144), size = load(group + 160);
   const V16 exact = root_of(dx * dx + dy * dy + dz * dz), d = exact - 2e-6F * (query.radius + exact + size);
@@ -37,19 +37,19 @@ inline FarLanes far_lanes(const float* group, const FarQuery& query) {
             g_tail = series_tail<FarDegree>(q, m + 1, query.gradient_series);
   out.f_error = out.field * f_tail;
   out.g_error = out.gradient * g_tail;
-  V16 far = q <= 0.5F ? splat(1) : V16{};
-  far = share > 0.0F ? far : V16{};  // an unused lane
-  far = f_tail >= 0.0F ? far : V16{};
-  far = g_tail >= 0.0F ? far : V16{};
-  far = out.f_error <= query.field_budget ? far : V16{};
-  far = out.g_error <= query.gradient_budget ? far : V16{};
+  V16 far = select(q <= 0.5F, splat(1), V16{});
+  far = select(share > 0.0F, far, V16{});  // an unused lane
+  far = select(f_tail >= 0.0F, far, V16{});
+  far = select(g_tail >= 0.0F, far, V16{});
+  far = select(out.f_error <= query.field_budget, far, V16{});
+  far = select(out.g_error <= query.gradient_budget, far, V16{});
   if (query.points) {
     out.far = far;
     return out;
   }
   // Gauss-Legendre rules of few nodes at the least distance to the ball (quadrature.h).
   const V16 near = larger(d - query.radius, splat(1e-20F)), near_high = tau / near, ratio = size / near;
-  const V16 slope = taper < 0.0F ? V16{} - taper : taper;
+  const V16 slope = select(taper < 0.0F, V16{} - taper, taper);
   const V16 widened = 1.0F + slope * near / larger(size * tau, splat(1e-30F));
   V16 scale = share * inverse_power<Exponent>(near_high * near_high, m);
   for (int k = 1; k < m; ++k) scale = scale * widened;
@@ -58,8 +58,8 @@ inline FarLanes far_lanes(const float* group, const FarQuery& query) {
   for (int nodes = 1; nodes <= query.most_nodes; ++nodes) {
     shrink = shrink * ratio * ratio;
     const V16 f = query.field_rule[nodes] * scale * shrink, g = query.gradient_rule[nodes] * g_scale * shrink;
-    V16 fits = f <= 0.25F * query.field_budget ? far : V16{};
-    fits = g <= 0.25F * query.gradient_budget ? fits : V16{};
+    V16 fits = select(f <= 0.25F * query.field_budget, far, V16{});
+    fits = select(g <= 0.25F * query.gradient_budget, fits, V16{});
     const bool all = !(largest_lane(far - fits) > 0);
     if (!all && nodes < query.most_nodes) continue;
     out.nodes = nodes;
@@ -85,9 +85,9 @@ inline SlightLanes slight_lanes(const float* group, const FarQuery& query, const
   SlightLanes out;
   out.f_error = share * inverse_power<Exponent>(high * high, m);
   out.g_error = static_cast<float>(m) * out.f_error * high;
-  V16 slight = out.f_error <= query.slight_field ? 1.0F - lanes_far.far : V16{};
-  slight = out.g_error <= query.slight_gradient ? slight : V16{};
-  out.slight = share > 0.0F ? slight : V16{};
+  V16 slight = select(out.f_error <= query.slight_field, 1.0F - lanes_far.far, V16{});
+  slight = select(out.g_error <= query.slight_gradient, slight, V16{});
+  out.slight = select(share > 0.0F, slight, V16{});
   return out;
 }
 
@@ -120,18 +120,18 @@ inline void add_far_nodes(const float* group, const FarQuery& query, const FarLa
   const V16 x = load(group) - c[0], y = load(group + 16) - c[1], z = load(group + 32) - c[2];
   const V16 ax = load(group + 48), ay = load(group + 64), az = load(group + 80);
   const V16 share = load(group + 112), taper = load(group + 128), tau = load(group + 144);
-  const V16 first = taper > 0.0F ? tau - taper : tau;  // radius at `from`; tau is the larger one
+  const V16 first = select(taper > 0.0F, tau - taper, tau);  // radius at `from`; tau is the larger one
   const float per_half = 1 / query.half;
   for (int k = 0; k < nodes; ++k) {
     const float s = query.points ? 0 : gauss_position[nodes][k];
     const V16 rx = x + ax * s, ry = y + ay * s, rz = z + az * s, radius = first + taper * s;
-    const V16 inverse2 = lanes_far.far > 0.0F ? 1.0F / (rx * rx + ry * ry + rz * rz) : V16{};
+    const V16 inverse2 = select(lanes_far.far > 0.0F, 1.0F / (rx * rx + ry * ry + rz * rz), V16{});
     const V16 ratio2 = radius * radius * inverse2;
     // w |r|^-m, w = share tau tau(s)^(n-1) for curves of m = n; share tau^m for points
     const V16 lift = query.points ? splat(1) : tau / radius;
     const V16 field = gauss_weight[nodes][k] * share * lift * inverse_power<Exponent>(ratio2, m);
     const V16 scale = inverse2 * query.half;
-    sums.add(rx * scale, ry * scale, rz * scale, lanes_far.far > 0.0F ? field : V16{}, radius * per_half);
+    sums.add(rx * scale, ry * scale, rz * scale, select(lanes_far.far > 0.0F, field, V16{}), radius * per_half);
   }
 }
 
@@ -141,21 +141,19 @@ inline void split_groups(const float* group, int groups, const FarQuery& query, 
   V16 totals[12] = {};
   for (int k = 0; k < groups; ++k, group += floats_per_piece_group) {
     const FarLanes lanes_far = far_lanes<Exponent, FarDegree>(group, query);
-    unsigned bits = 0;
-    for (int i = 0; i < lanes; ++i) bits |= (lanes_far.far[i] > 0 ? 0U : 1U) << i;
+    const unsigned bits = ~lane_bits(lanes_far.far > 0.0F) & 0xffff;
     near[k] = static_cast<unsigned short>(bits);
     if (query.slight_field > 0 && bits != 0 && is_thin_beside(group, query)) {
       const SlightLanes left_out = slight_lanes<Exponent>(group, query, lanes_far);
-      for (int i = 0; i < lanes; ++i)
-        if (left_out.slight[i] > 0) near[k] = static_cast<unsigned short>(near[k] & ~(1U << i));
-      totals[0] += left_out.slight > 0.0F ? left_out.f_error : V16{};
-      totals[1] += left_out.slight > 0.0F ? left_out.g_error : V16{};
+      near[k] = static_cast<unsigned short>(bits & ~lane_bits(left_out.slight > 0.0F));
+      totals[0] += select(left_out.slight > 0.0F, left_out.f_error, V16{});
+      totals[1] += select(left_out.slight > 0.0F, left_out.g_error, V16{});
     }
     if (bits == 0xFFFF) continue;
-    totals[0] += lanes_far.far > 0.0F ? lanes_far.f_error : V16{};
-    totals[1] += lanes_far.far > 0.0F ? lanes_far.g_error : V16{};
-    totals[2] += lanes_far.far > 0.0F ? lanes_far.field : V16{};
-    totals[3] += lanes_far.far > 0.0F ? lanes_far.gradient : V16{};
+    totals[0] += select(lanes_far.far > 0.0F, lanes_far.f_error, V16{});
+    totals[1] += select(lanes_far.far > 0.0F, lanes_far.g_error, V16{});
+    totals[2] += select(lanes_far.far > 0.0F, lanes_far.field, V16{});
+    totals[3] += select(lanes_far.far > 0.0F, lanes_far.gradient, V16{});
     add_far_nodes<Exponent, FarDegree>(group, query, lanes_far, sums);
   }
   float s[16];

@@ -22,8 +22,12 @@ struct Places16 {
   V16 p[3];
 
   Places16(const float (&center)[3], float half) {
-    for (int lane = 0; lane < lanes; ++lane)
-      for (int k = 0; k < 3; ++k) p[k][lane] = center[k] + half * strand_place[lane < strand_places ? lane : 0][k];
+    for (int k = 0; k < 3; ++k) {
+      alignas(64) float of_lane[lanes];
+      for (int lane = 0; lane < lanes; ++lane)
+        of_lane[lane] = center[k] + half * strand_place[lane < strand_places ? lane : 0][k];
+      p[k] = load(of_lane);
+    }
   }
   // A quadratic whose coefficients for 1, x, y, z, xx, yy, zz, xy, xz, yz are `stride` apart.
   Slopes16 quadratic(const float* coefficients, int stride) const {
@@ -74,10 +78,10 @@ inline void add_strand_groups(const float* group, const float* direction, int gr
 inline void set_strand(const Slopes16 (&s)[4], Strand16& out) {
   const auto counts = s[0].value > 0.0F;
   out = {};
-  out.f.value = counts ? s[0].value : V16{};
-  for (int e = 0; e < 3; ++e) out.f.slope[e] = counts ? s[0].slope[e] : V16{};
+  out.f.value = select(counts, s[0].value, V16{});
+  for (int e = 0; e < 3; ++e) out.f.slope[e] = select(counts, s[0].slope[e], V16{});
   const V16 size2 = s[1].value * s[1].value + s[2].value * s[2].value + s[3].value * s[3].value;
-  const V16 inverse = (counts & (size2 > 0.0F)) ? 1.0F / root_of(size2) : V16{};
+  const V16 inverse = select(counts & (size2 > 0.0F), 1.0F / root_of(size2), V16{});
   for (int k = 0; k < 3; ++k) out.u[k].value = s[1 + k].value * inverse;
   for (int e = 0; e < 3; ++e) {
     V16 along{};
@@ -205,8 +209,8 @@ void strand_shares(const FieldLevel& level, int degree, const float (&center)[3]
                  below = pairs.sum + pairs.sum + at.quadratic(far.far + 47, tensor_floats);
   // One strand alone: any angle will do, see directional_alpha.h.
   const auto some = below.value > 1e-36F;
-  const V16 inverse = some ? 1.0F / below.value : V16{};
-  const V16 share = some ? smaller(splat(1), larger(V16{}, above.value * inverse)) : splat(1);
+  const V16 inverse = select(some, 1.0F / below.value, V16{});
+  const V16 share = select(some, smaller(splat(1), larger(V16{}, above.value * inverse)), splat(1));
   __builtin_memcpy(out.share, &share, sizeof share);
   for (int e = 0; e < 3; ++e) {
     const V16 slope = (above.slope[e] - share * below.slope[e]) * inverse;

@@ -10,34 +10,59 @@ struct RaySums {
 };
 
 struct Probe {
-  V16 px, py, pz, ex, ey, ez;
+  Native px, py, pz, ex, ey, ez;
 };
+
+// As many sums, 12 or 16, over sources in lanes, one register of lanes after the other, so that accumulators stay in
+// registers: add(group, nearest, a) adds the sources in the first of the lanes, and raises `nearest`.
+template <int Count, class Add>
+inline V16 sum_in_registers(const float* group, V16& nearest, const Add& add) {
+  Native a[natives][Count], close[natives];
+  split(nearest, close);
+  for (int part = 0; part < natives; ++part) {
+    Native of_part[Count];
+#pragma GCC unroll 16
+    for (int i = 0; i < Count; ++i) of_part[i] = Native{};
+    add(group + part * native_lanes, close[part], of_part);
+#pragma GCC unroll 16
+    for (int i = 0; i < Count; ++i) a[part][i] = of_part[i];
+  }
+  nearest = joined(close);
+  V16 whole[Count];
+  for (int i = 0; i < Count; ++i) {
+    Native parts[natives];
+    for (int part = 0; part < natives; ++part) parts[part] = a[part][i];
+    whole[i] = joined(parts);
+  }
+  return lane_sums(whole);
+}
 
 // The sums over one list, in lanes; what they stand for is told by add_list().
 template <int Exponent>
-inline V16 sum_list(const float* group, int groups, int exponent, const Probe& probe, V16& nearest) {
-  V16 a[12] = {};
-  for (int k = 0; k < groups; ++k, group += floats_per_group) {
-    const V16 dx = probe.px - load(group), dy = probe.py - load(group + 16), dz = probe.pz - load(group + 32);
-    const V16 share = load(group + 48), radius = load(group + 64);
-    const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz);
-    const V16 w0 = field_of<Exponent>(share, radius, inv, exponent);
-    const V16 w2 = w0 * inv, k2 = w2 * radius, k4 = k2 * inv;
-    const V16 along = dx * probe.ex + dy * probe.ey + dz * probe.ez, ka = k4 * along;
-    a[0] += w0;
-    a[1] += w2 * along;
-    a[2] += w2;
-    a[3] += k2;
-    a[4] += k4;
-    a[5] += k2 * dx;
-    a[6] += k2 * dy;
-    a[7] += k2 * dz;
-    a[8] += ka * dx;
-    a[9] += ka * dy;
-    a[10] += ka * dz;
-    nearest = larger(nearest, inv);
-  }
-  return lane_sums(a);
+inline V16 sum_list(const float* first_group, int groups, int exponent, const Probe& probe, V16& nearest) {
+  return sum_in_registers<12>(first_group, nearest, [&](const float* group, Native& close, auto& a) {
+    for (int k = 0; k < groups; ++k, group += floats_per_group) {
+      const Native dx = probe.px - load_native(group), dy = probe.py - load_native(group + 16),
+                   dz = probe.pz - load_native(group + 32);
+      const Native share = load_native(group + 48), radius = load_native(group + 64);
+      const Native inv = 1.0F / (dx * dx + dy * dy + dz * dz);
+      const Native w0 = field_of<Exponent>(share, radius, inv, exponent);
+      const Native w2 = w0 * inv, k2 = w2 * radius, k4 = k2 * inv;
+      const Native along = dx * probe.ex + dy * probe.ey + dz * probe.ez, ka = k4 * along;
+      a[0] += w0;
+      a[1] += w2 * along;
+      a[2] += w2;
+      a[3] += k2;
+      a[4] += k4;
+      a[5] += k2 * dx;
+      a[6] += k2 * dy;
+      a[7] += k2 * dz;
+      a[8] += ka * dx;
+      a[9] += ka * dy;
+      a[10] += ka * dz;
+      close = larger(close, inv);
+    }
+  });
 }
 
 // Adds the sums of a list of exponent m; e is the direction of the ray.
@@ -59,35 +84,37 @@ struct FullSums {
 };
 
 template <int Exponent>
-inline void add_full_sums(const float* group, int groups, int exponent, const float p[3], V16& nearest, FullSums& out) {
-  V16 a[12] = {}, b[12] = {};
-  for (int k = 0; k < groups; ++k, group += floats_per_group) {
-    const V16 dx = p[0] - load(group), dy = p[1] - load(group + 16), dz = p[2] - load(group + 32);
-    const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz);
-    const V16 radius = load(group + 64), w0 = field_of<Exponent>(load(group + 48), radius, inv, exponent);
-    const V16 w2 = w0 * inv, k2 = w2 * radius, k4 = k2 * inv;
-    const V16 kx = k4 * dx, ky = k4 * dy, kz = k4 * dz;
-    a[0] += w0;
-    a[1] += w2 * dx;
-    a[2] += w2 * dy;
-    a[3] += w2 * dz;
-    a[4] += k2;
-    a[5] += k2 * dx;
-    a[6] += k2 * dy;
-    a[7] += k2 * dz;
-    a[8] += w2;
-    a[9] += k4;
-    b[0] += kx * dx;
-    b[1] += ky * dy;
-    b[2] += kz * dz;
-    b[3] += kx * dy;
-    b[4] += kx * dz;
-    b[5] += ky * dz;
-    nearest = larger(nearest, inv);
-  }
-  float s[16], t[16];
-  sum_lanes(a, s);
-  sum_lanes(b, t);
+inline void add_full_sums(const float* first_group, int groups, int exponent, const float p[3], V16& nearest,
+                          FullSums& out) {
+  const V16 sums = sum_in_registers<16>(first_group, nearest, [&](const float* group, Native& close, auto& a) {
+    for (int k = 0; k < groups; ++k, group += floats_per_group) {
+      const Native dx = p[0] - load_native(group), dy = p[1] - load_native(group + 16),
+                   dz = p[2] - load_native(group + 32);
+      const Native inv = 1.0F / (dx * dx + dy * dy + dz * dz), radius = load_native(group + 64);
+      const Native w0 = field_of<Exponent>(load_native(group + 48), radius, inv, exponent);
+      const Native w2 = w0 * inv, k2 = w2 * radius, k4 = k2 * inv;
+      const Native kx = k4 * dx, ky = k4 * dy, kz = k4 * dz;
+      a[0] += w0;
+      a[1] += w2 * dx;
+      a[2] += w2 * dy;
+      a[3] += w2 * dz;
+      a[4] += k2;
+      a[5] += k2 * dx;
+      a[6] += k2 * dy;
+      a[7] += k2 * dz;
+      a[8] += w2;
+      a[9] += k4;
+      a[10] += kx * dx;
+      a[11] += ky * dy;
+      a[12] += kz * dz;
+      a[13] += kx * dy;
+      a[14] += kx * dz;
+      a[15] += ky * dz;
+      close = larger(close, inv);
+    }
+  });
+  float s[16];
+  __builtin_memcpy(s, &sums, sizeof s);
   const float m = static_cast<float>(Exponent > 0 ? Exponent : exponent);
   out.f += s[0];
   out.second += s[8];
@@ -95,8 +122,8 @@ inline void add_full_sums(const float* group, int groups, int exponent, const fl
   for (int i = 0; i < 3; ++i) {
     out.df[i] -= m * s[1 + i];
     out.g[i] -= m * s[5 + i];
-    out.h[i] += m * (m + 2) * t[i] - m * s[4];
-    out.h[3 + i] += m * (m + 2) * t[3 + i];
+    out.h[i] += m * (m + 2) * s[10 + i] - m * s[4];
+    out.h[3 + i] += m * (m + 2) * s[13 + i];
   }
 }
 
@@ -106,18 +133,22 @@ struct AngleSums {
 };
 
 template <int Exponent>
-inline void add_angle_sums(const float* group, int groups, int exponent, const Probe& probe, AngleSums& out) {
-  V16 a[12] = {};
-  for (int k = 0; k < groups; ++k, group += floats_per_group) {
-    const V16 dx = probe.px - load(group), dy = probe.py - load(group + 16), dz = probe.pz - load(group + 32);
-    const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz);
-    const V16 w0 = field_of<Exponent>(load(group + 48), load(group + 64), inv, exponent), w2 = w0 * inv;
-    a[0] += w0;
-    a[1] += w2 * (dx * probe.ex + dy * probe.ey + dz * probe.ez);
-    a[2] += w2;
-  }
+inline void add_angle_sums(const float* first_group, int groups, int exponent, const Probe& probe, AngleSums& out) {
+  V16 none{};
+  const V16 sums = sum_in_registers<12>(first_group, none, [&](const float* group, Native&, auto& a) {
+    for (int k = 0; k < groups; ++k, group += floats_per_group) {
+      const Native dx = probe.px - load_native(group), dy = probe.py - load_native(group + 16),
+                   dz = probe.pz - load_native(group + 32);
+      const Native inv = 1.0F / (dx * dx + dy * dy + dz * dz);
+      const Native w0 = field_of<Exponent>(load_native(group + 48), load_native(group + 64), inv, exponent),
+                   w2 = w0 * inv;
+      a[0] += w0;
+      a[1] += w2 * (dx * probe.ex + dy * probe.ey + dz * probe.ez);
+      a[2] += w2;
+    }
+  });
   float s[16];
-  sum_lanes(a, s);
+  __builtin_memcpy(s, &sums, sizeof s);
   out.value += s[0];
   out.slope -= static_cast<float>(Exponent > 0 ? Exponent : exponent) * s[1];
   out.second += s[2];
@@ -173,46 +204,34 @@ struct RaySummer {
   }
 };
 
-// Rows become columns: four times, each row is woven with the one eight below.
-inline void transpose(V16 (&a)[16]) {
-  for (int round = 0; round < 4; ++round) {
-    V16 b[16];
-    for (int i = 0; i < 8; ++i) {
-      b[2 * i] = __builtin_shufflevector(a[i], a[i + 8], 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
-      b[2 * i + 1] =
-          __builtin_shufflevector(a[i], a[i + 8], 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
-    }
-    for (int i = 0; i < 16; ++i) a[i] = b[i];
-  }
-}
-
 // For a packet: each ray has its own sums over the sources, in the order of a single ray.
 struct PacketSummer {
-  const V16 (&at)[3];
-  const Ray16& rays;
+  const PacketFloat (&at)[3];
+  const PacketRays& rays;
   unsigned active;
-  V16& nearest;
-  RaySums<V16>& out;
+  PacketFloat& nearest;
+  RaySums<PacketFloat>& out;
 
   template <int Exponent>
   void add(const float* group, int groups, int exponent) const {
-    V16 s[16];
-    for (unsigned left = ~active & 0xffff; left != 0; left &= left - 1) s[__builtin_ctz(left)] = V16{};
+    V16 s[packet_lanes];
+    for (unsigned left = ~active & all_lane_bits; left != 0; left &= left - 1) s[__builtin_ctz(left)] = V16{};
     for (unsigned left = active; left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left);
-      const Probe probe{splat(at[0][lane]),
-                        splat(at[1][lane]),
-                        splat(at[2][lane]),
-                        splat(rays.direction[0][lane]),
-                        splat(rays.direction[1][lane]),
-                        splat(rays.direction[2][lane])};
+      const Probe probe{Native{} + at[0][lane],
+                        Native{} + at[1][lane],
+                        Native{} + at[2][lane],
+                        Native{} + rays.direction[0][lane],
+                        Native{} + rays.direction[1][lane],
+                        Native{} + rays.direction[2][lane]};
       V16 close{};
       const V16 sums = sum_list<Exponent>(group, groups, exponent, probe, close);
       s[lane] = with_largest_last(sums, close);
     }
-    transpose(s);
-    add_list(static_cast<float>(Exponent > 0 ? Exponent : exponent), s, rays.direction, out);
-    nearest = larger(nearest, s[15]);
+    PacketFloat columns[lanes];
+    find_columns(s, columns);
+    add_list(static_cast<float>(Exponent > 0 ? Exponent : exponent), columns, rays.direction, out);
+    nearest = larger(nearest, columns[lanes - 1]);
   }
 };
 

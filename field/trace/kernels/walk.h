@@ -1,14 +1,5 @@
 // Which slots of a cube a ray crosses. Part of block_kernels_<set>.cpp.
 
-// Bit i for each lane i of the first that is set, bit i + 16 for the second.
-inline unsigned slot_bits(Index16 first, Index16 second) {
-  const Index16 bit{1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
-  Index16 v = (first & bit) | (second & (bit << 16));
-  v |= __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7);
-  v |= __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3);
-  return static_cast<unsigned>(v[0] | v[1] | v[2] | v[3]);
-}
-
 // Where a ray is in the four layers along an axis: the lanes of `low` and `high` name the planes of a layer. Layers
 // share their planes, and so the t of them; the outer ones reach beyond the cube, so that no rounding of its faces cuts
 // off the end of a ray. (Whole vectors throughout: narrower ones are widened through memory.)
@@ -23,14 +14,14 @@ struct Layers {
 };
 
 inline constexpr float far_out = 2;
-inline constexpr V16 x_low{-far_out, -0.5F, 0, 0.5F, -far_out, -0.5F, 0, 0.5F,
-                           -far_out, -0.5F, 0, 0.5F, -far_out, -0.5F, 0, 0.5F};
-inline constexpr V16 x_high{-0.5F, 0, 0.5F, far_out, -0.5F, 0, 0.5F, far_out,
-                            -0.5F, 0, 0.5F, far_out, -0.5F, 0, 0.5F, far_out};
-inline constexpr V16 y_low{-far_out, -far_out, -far_out, -far_out, -0.5F, -0.5F, -0.5F, -0.5F,
-                           0,        0,        0,        0,        0.5F,  0.5F,  0.5F,  0.5F};
-inline constexpr V16 y_high{-0.5F, -0.5F, -0.5F, -0.5F, 0,       0,       0,       0,
-                            0.5F,  0.5F,  0.5F,  0.5F,  far_out, far_out, far_out, far_out};
+alignas(64) inline constexpr float x_low[lanes] = {-far_out, -0.5F, 0, 0.5F, -far_out, -0.5F, 0, 0.5F,
+                                                   -far_out, -0.5F, 0, 0.5F, -far_out, -0.5F, 0, 0.5F};
+alignas(64) inline constexpr float x_high[lanes] = {-0.5F, 0, 0.5F, far_out, -0.5F, 0, 0.5F, far_out,
+                                                    -0.5F, 0, 0.5F, far_out, -0.5F, 0, 0.5F, far_out};
+alignas(64) inline constexpr float y_low[lanes] = {-far_out, -far_out, -far_out, -far_out, -0.5F, -0.5F, -0.5F, -0.5F,
+                                                   0,        0,        0,        0,        0.5F,  0.5F,  0.5F,  0.5F};
+alignas(64) inline constexpr float y_high[lanes] = {-0.5F, -0.5F, -0.5F, -0.5F, 0,       0,       0,       0,
+                                                    0.5F,  0.5F,  0.5F,  0.5F,  far_out, far_out, far_out, far_out};
 
 inline void insert(Walk& walk, int slot, float begin, float end) {
   int k = walk.count++;
@@ -45,19 +36,20 @@ inline void insert(Walk& walk, int slot, float begin, float end) {
 }
 
 void walk(std::uint64_t slots, const LocalRay& ray, float t0, float t1, Walk& out) {
-  const Layers x(x_low, x_high, ray.origin[0], ray.direction[0]), y(y_low, y_high, ray.origin[1], ray.direction[1]);
+  const Layers x(load(x_low), load(x_high), ray.origin[0], ray.direction[0]),
+      y(load(y_low), load(y_high), ray.origin[1], ray.direction[1]);
   const V16 enter = larger(larger(x.enter, y.enter), splat(t0)), leave = smaller(smaller(x.leave, y.leave), splat(t1));
   const float inverse = 1 / nonzero(ray.direction[2]);
   float z_enter[4], z_leave[4], plane = (-far_out - ray.origin[2]) * inverse;
-  Index16 met[4];
+  std::uint64_t left = 0;
   for (int k = 0; k < 4; ++k) {
     const float next = ((k < 3 ? -0.5F + 0.5F * static_cast<float>(k) : far_out) - ray.origin[2]) * inverse;
     z_enter[k] = min_of(plane, next);
     z_leave[k] = max_of(plane, next);
     plane = next;
-    met[k] = larger(enter, splat(z_enter[k])) < smaller(leave, splat(z_leave[k]));
+    const Index16 met = larger(enter, splat(z_enter[k])) < smaller(leave, splat(z_leave[k]));
+    left |= static_cast<std::uint64_t>(lane_bits(met)) << (lanes * k);
   }
-  std::uint64_t left = slot_bits(met[0], met[1]) | static_cast<std::uint64_t>(slot_bits(met[2], met[3])) << 32;
   alignas(64) float column_enter[lanes], column_leave[lanes];
   __builtin_memcpy(column_enter, &enter, sizeof column_enter);
   __builtin_memcpy(column_leave, &leave, sizeof column_leave);
