@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 namespace marrow {
@@ -11,6 +12,11 @@ namespace {
 constexpr double clearly = 1e-5, surely = 1e-3;
 // What doubles may round.
 constexpr double least_margin = 1e-12;
+
+// What a solid stepped off its surface, or, where it found no step, what places there are rounded by.
+double first_step(const SurfaceHit& hit, const Box3& reach) {
+  return std::max(length(hit.outside - hit.position), std::ldexp(largest_coordinate(reach), -48));
+}
 
 Vec3d outward(const FieldSample& s) {
   const double steepness = length(s.gradient);
@@ -133,12 +139,13 @@ void UnitedSolids::free_start(std::size_t solid, const Ray& ray, SurfaceHit& hit
   if (!(nearest.value > 1 - clearly)) return;
   const Vec3d normal = hit.normal, away = outward(nearest), back = -ray.direction.vec();
   const Body& body = bodies_[solids_[solid].body];
-  const double first = length(hit.outside - hit.position), longest = 1e-2 * max_component(solids_[solid].reach.size());
+  const Box3& reach = solids_[solid].reach;
+  const double first = first_step(hit, reach), longest = 1e-2 * max_component(reach.size());
   const Frame frame = Frame::around(hit.normal);
   for (const double margin : {3 * clearly, least_margin})
     for (const Vec3d& way : {normal + away, back, away + back, normal + back, away, -back, frame.to_world({1, 0, 0}),
                              frame.to_world({-1, 0, 0}), frame.to_world({0, 1, 0}), frame.to_world({0, -1, 0})})
-      for (double step = first; step < std::max(longest, 16 * first); step *= 2)
+      for (double step = first; length_squared(way) > 0 && step < std::max(longest, 16 * first); step *= 2)
         if (const Vec3d p = hit.position + way * step; largest_at(body, p) < 1 - margin) {
           hit.outside = p;
           return;
@@ -147,9 +154,11 @@ void UnitedSolids::free_start(std::size_t solid, const Ray& ray, SurfaceHit& hit
 
 std::optional<Vec3d> UnitedSolids::start_before(std::size_t solid, const Ray& ray, const SurfaceHit& hit) const {
   if (!(dot(ray.direction, hit.normal) < 0)) return {};
-  const double longest = std::min(hit.t - ray.t_min, 1e-2 * max_component(solids_[solid].reach.size()));
+  const Box3& reach = solids_[solid].reach;
+  const double longest = std::min(hit.t - ray.t_min, 1e-2 * max_component(reach.size()));
+  if (!(longest > 0)) return {};
   for (const double margin : {3 * clearly, least_margin})
-    for (double step = std::min(length(hit.outside - hit.position), longest); step <= longest; step *= 2)
+    for (double step = std::min(first_step(hit, reach), longest); step <= longest; step *= 2)
       if (const Vec3d p = hit.position - ray.direction * step; largest_at(bodies_[solids_[solid].body], p) < 1 - margin)
         return p;
   return {};

@@ -59,6 +59,17 @@ TEST(StartsBetweenObjects, ABallOnTheFloorBesideOthers) {
   EXPECT_EQ(within, 0);
 }
 
+// There is no way back, and hardly a step off the surface: what matters is that an answer comes.
+TEST(StartsBetweenObjects, FromTheContactItself) {
+  Random random(213);
+  const auto surfaces = surfaces_of({ball({}, 1), ball({2, 0, 0}, 1)}, {plane({0, -1, 0}, {0, 1, 0})});
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3d contact = i % 2 == 0 ? Vec3d{0, -1, 0} : Vec3d{1, 0, 0};
+    const auto hit = surfaces->first_hit({contact, normalize(random_direction(random))});
+    EXPECT_TRUE(!hit || is_finite(hit->outside));
+  }
+}
+
 // Through a thousand bounces, half of them along the surface, no ray gets out of a room whose walls bodies go through.
 TEST(StartsBetweenObjects, NoWayOutOfARoom) {
   Random random(212);
