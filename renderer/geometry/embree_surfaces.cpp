@@ -102,7 +102,7 @@ bool EmbreeSurfaces::is_cut_off(const Ray& ray, const SurfaceHit& hit) const {
     if (dot(p.normal, begin - p.point) * dot(p.normal, hit.outside - p.point) < 0) return true;
   const Vec3d way = hit.outside - hit.position;
   const double reach = length(way);
-  if (!united_.several() || !(reach > 0)) return false;
+  if (!united_.may_part(hit.position, hit.outside, hit.object) || !(reach > 0)) return false;
   const PartHierarchy::Hit between =
       finest().any_hit({hit.position, UnitVec3::unchecked(way / reach), 0, reach}, hit.object);
   return between.found && !between.begins_inside;

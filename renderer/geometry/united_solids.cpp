@@ -18,6 +18,12 @@ double first_step(const SurfaceHit& hit, const Box3& reach) {
   return std::max(length(hit.outside - hit.position), std::ldexp(largest_coordinate(reach), -48));
 }
 
+bool overlap(const Box3& a, const Box3& b) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!(a.lower[i] <= b.upper[i] && b.lower[i] <= a.upper[i])) return false;
+  return true;
+}
+
 Vec3d outward(const FieldSample& s) {
   const double steepness = length(s.gradient);
   return steepness > 0 ? s.gradient / -steepness : Vec3d{};
@@ -29,9 +35,14 @@ UnitedSolids::UnitedSolids(std::span<const PlacedSolid> solids) {
   std::map<ObjectId, std::size_t> bodies;
   for (const PlacedSolid& placed : solids) {
     const std::size_t body = bodies.try_emplace(placed.object, bodies.size()).first->second;
-    if (body == bodies_.size()) bodies_.emplace_back();
+    if (body == bodies_.size()) {
+      bodies_.emplace_back();
+      extents_.push_back({placed.object, {}});
+    }
     bodies_[body].push_back(solids_.size());
     solids_.push_back({placed.solid.get(), placed.solid->reach(), body});
+    extents_[body].box.include(placed.solid->extent());
+    extents_[body].box.include(placed.solid->reach());
   }
 }
 
@@ -162,6 +173,14 @@ std::optional<Vec3d> UnitedSolids::start_before(std::size_t solid, const Ray& ra
       if (const Vec3d p = hit.position - ray.direction * step; largest_at(bodies_[solids_[solid].body], p) < 1 - margin)
         return p;
   return {};
+}
+
+bool UnitedSolids::may_part(const Vec3d& a, const Vec3d& b, ObjectId of) const {
+  constexpr std::size_t quickly_asked = 16;
+  if (extents_.size() > quickly_asked) return true;
+  Box3 between{a, a};
+  between.include(b);
+  return std::ranges::any_of(extents_, [&](const Extent& e) { return e.object != of && overlap(e.box, between); });
 }
 
 bool UnitedSolids::is_outside(std::size_t solid, const Vec3d& p) const {

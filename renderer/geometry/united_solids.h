@@ -34,8 +34,8 @@ class UnitedSolids {
   bool is_outside(std::size_t solid, const Vec3d& p) const;
   /// Whether starts beside it are far enough from it to lie behind other surface: not those beside a triangle.
   bool may_be_cut_off(std::size_t solid) const { return !solids_[solid].reach.empty(); }
-  /// Whether there are several objects.
-  bool several() const { return bodies_.size() > 1; }
+  /// Whether surface of another object than the solid's may pass between two places.
+  bool may_part(const Vec3d& a, const Vec3d& b, ObjectId of) const;
 
  private:
   struct Placed {
@@ -44,6 +44,10 @@ class UnitedSolids {
     std::size_t body = 0;
   };
   using Body = std::vector<std::size_t>;  // solids
+  struct Extent {
+    ObjectId object;
+    Box3 box;
+  };
 
   std::optional<std::size_t> cover_of(const PartHit&, const Ray&) const;
   PartHit nearest(std::span<const std::size_t> solids, const Ray&, std::vector<RayVisit>*) const;
@@ -55,6 +59,7 @@ class UnitedSolids {
 
   std::vector<Placed> solids_;
   std::vector<Body> bodies_;
+  std::vector<Extent> extents_;  // of bodies
 };
 
 }  // namespace marrow
