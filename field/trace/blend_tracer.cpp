@@ -28,6 +28,7 @@ BlendTracer::~BlendTracer() = default;
 
 std::size_t BlendTracer::tile_count() const { return state_->tree.tile_count(); }
 Box3 BlendTracer::tile_box(std::size_t tile) const { return state_->tree.tile_box(tile); }
+const Box3& BlendTracer::bounds() const { return state_->bounds; }
 const BlendField& BlendTracer::field() const { return state_->field; }
 
 const Block& BlendTracer::block(const Tile& tile, int slot) const {
@@ -99,8 +100,8 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
   log.undecided = std::min(log.undecided, cube.to_world(root.undecided));
   if (!root.hit) return {};
   const double t = std::max(cube.to_world(root.t), ray.t_min);
-  // Where a ray ends inside, what is met may be its end, which as a float can lie behind it.
-  return CellHit{any ? std::min(t, exit) : t, &b};
+  // Where a ray from outside ends inside, what is met may be its end, which as a float can lie behind it.
+  return CellHit{any && !query.leaving ? std::min(t, exit) : t, &b};
 }
 
 TraceStatistics BlendTracer::statistics() const {

@@ -117,6 +117,8 @@ class BlendTracer {
   /// Tiles are disjoint, and all surface lies in them.
   std::size_t tile_count() const;
   Box3 tile_box(std::size_t tile) const;
+  /// Of all tiles, and so of all that is inside.
+  const Box3& bounds() const;
 
   /// The first place inside a tile where the ray comes to the surface: from outside, or, for a ray that begins inside,
   /// where it leaves. A ray that begins within rounding of the surface counts as outside. t in [ray.t_min, ray.t_max];

@@ -45,7 +45,7 @@ Result<std::unique_ptr<EmbreeSurfaces>> EmbreeSurfaces::make(std::vector<PlacedS
   std::vector<PartsOfSolid> elements;
   for (const PlacedSolid& p : s->solids_) {
     s->extent_.include(p.solid->extent());
-    elements.push_back({p.solid.get(), whole_elements(*p.solid)});
+    elements.push_back({p.solid.get(), p.object, whole_elements(*p.solid)});
   }
   auto whole = PartHierarchy::make(s->device_.get(), std::move(elements));
   if (!whole) return whole.why();
@@ -62,7 +62,7 @@ void EmbreeSurfaces::refine() const {
   std::vector<PartsOfSolid> solids;
   Division division;
   for (const PlacedSolid& p : solids_) {
-    solids.push_back({p.solid.get(), p.solid->parts()});
+    solids.push_back({p.solid.get(), p.object, p.solid->parts()});
     division.add(solids.back().parts);
     if (division.parts > most_parts) return;
   }
@@ -94,6 +94,43 @@ bool EmbreeSurfaces::Division::is_like(const Division& b) const {
          std::fabs(area - b.area) <= much * b.area;
 }
 
+// Whether the surface of another object passes between a hit and the start of further rays. The ray has not met it, so
+// that a plane has the hit on the side where the ray begins.
+bool EmbreeSurfaces::is_cut_off(const Ray& ray, const SurfaceHit& hit) const {
+  const Vec3d begin = ray.at(ray.t_min);
+  for (const PlacedPlane& p : planes_)
+    if (dot(p.normal, begin - p.point) * dot(p.normal, hit.outside - p.point) < 0) return true;
+  const Vec3d way = hit.outside - hit.position;
+  const double reach = length(way);
+  if (!united_.may_part(hit.position, hit.outside, hit.object) || !(reach > 0)) return false;
+  const PartHierarchy::Hit between =
+      finest().any_hit({hit.position, UnitVec3::unchecked(way / reach), 0, reach}, hit.object);
+  return between.found && !between.begins_inside;
+}
+
+// Where the ray came from nothing is in the way; else nearer to the surface.
+void EmbreeSurfaces::uncover_start(std::size_t solid, const Ray& ray, SurfaceHit& hit) const {
+  constexpr int most_halvings = 20;
+  if (const auto back = united_.start_before(solid, ray, hit)) {
+    hit.outside = *back;
+    return;
+  }
+  SurfaceHit nearer = hit;
+  for (int i = 0; i < most_halvings; ++i) {
+    nearer.outside = hit.position + 0.5 * (nearer.outside - hit.position);
+    if (!united_.is_outside(solid, nearer.outside)) return;
+    if (is_cut_off(ray, nearer)) continue;
+    hit.outside = nearer.outside;
+    return;
+  }
+}
+
+// Of a hit that its solid has described.
+void EmbreeSurfaces::free_start(std::size_t solid, const Ray& ray, SurfaceHit& hit) const {
+  united_.free_start(solid, ray, hit);
+  if (united_.may_be_cut_off(solid) && is_cut_off(ray, hit)) uncover_start(solid, ray, hit);
+}
+
 // Hits of one solid that follow each other are described together.
 class EmbreeSurfaces::Describing {
  public:
@@ -108,19 +145,22 @@ class EmbreeSurfaces::Describing {
     hit.t = found.t;
     hit.position = ray.at(found.t);
     hit.object = placed.object;
-    if (placed.solid.get() != solid_ || count_ == waiting_.size()) describe();
-    solid_ = placed.solid.get();
+    if (found.solid != solid_ || count_ == waiting_.size()) describe();
+    solid_ = found.solid;
     waiting_[count_++] = {found.element, found.place, &ray, &hit};
   }
 
  private:
   void describe() {
-    if (count_ > 0) solid_->describe(std::span(waiting_).first(count_));
+    if (count_ == 0) return;
+    const auto hits = std::span(waiting_).first(count_);
+    surfaces_.solids_[solid_].solid->describe(hits);
+    for (const HitToDescribe& h : hits) surfaces_.free_start(solid_, *h.ray, *h.hit);
     count_ = 0;
   }
 
   const EmbreeSurfaces& surfaces_;
-  const Solid* solid_ = nullptr;
+  std::size_t solid_ = 0;
   std::array<HitToDescribe, 16> waiting_;
   std::size_t count_ = 0;
 };
@@ -152,15 +192,20 @@ void EmbreeSurfaces::describe(const PlaneHit& of, const Ray& ray, SurfaceHit& hi
   hit.material = plane->material;
 }
 
-// Of a ray that begins inside only whole elements tell.
-PartHierarchy::Hit EmbreeSurfaces::asked_of_elements(const Ray& ray, std::vector<RayVisit>* visits) const {
+// Of a ray that begins inside only whole elements tell, and of one that is inside several solids these one by one.
+PartHierarchy::Hit EmbreeSurfaces::asked_again(PartHierarchy::Hit found, const Ray& ray,
+                                               std::vector<RayVisit>* visits) const {
+  if (found.begins_inside) {
+    if (visits != nullptr) visits->clear();
+    found = whole_->first_hit(ray, visits);
+  }
+  if (!united_.is_covered(found, ray)) return found;
   if (visits != nullptr) visits->clear();
-  return whole_->first_hit(ray, visits);
+  return united_.first_hit(ray, visits);
 }
 
 PartHierarchy::Hit EmbreeSurfaces::nearest_on(const Ray& ray, std::vector<RayVisit>* visits) const {
-  const PartHierarchy::Hit found = finest().first_hit(ray, visits);
-  return found.begins_inside ? asked_of_elements(ray, visits) : found;
+  return asked_again(finest().first_hit(ray, visits), ray, visits);
 }
 
 std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray) const {
@@ -177,8 +222,14 @@ std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray, RayRecord& r
   return hit_of(found, plane, ray);
 }
 
+// Inside a body all that is found before its exit is none of its surface, and any exit may be too far away.
+bool EmbreeSurfaces::hides(const PartHierarchy::Hit& any, const Ray& ray) const {
+  const bool inside = any.begins_inside || (any.found && united_.begins_inside(ray));
+  return inside ? nearest_on(ray, nullptr).found : any.found;
+}
+
 bool EmbreeSurfaces::occluded(const Ray& ray) const {
-  return nearest_plane(ray).plane != nullptr || finest().occluded(ray);
+  return nearest_plane(ray).plane != nullptr || hides(finest().any_hit(ray), ray);
 }
 
 EmbreeSurfaces::BeforePlanes::BeforePlanes(const EmbreeSurfaces& surfaces, std::span<const Ray> all) : rays(all) {
@@ -194,8 +245,7 @@ void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::option
   const BeforePlanes before(*this, rays);
   std::vector<PartHierarchy::Hit> found(rays.size());
   stream_first_hits(finest(), before.rays, found, {});
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (found[i].begins_inside) found[i] = asked_of_elements(before.rays[i], nullptr);
+  for (std::size_t i = 0; i < rays.size(); ++i) found[i] = asked_again(found[i], before.rays[i], nullptr);
   describe(found, before.planes(), rays, hits);
 }
 
@@ -208,17 +258,17 @@ void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::option
   std::vector<PartHierarchy::Hit> found(rays.size());
   stream_first_hits(finest(), before.rays, found, std::span(visits).first(rays.size()));
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (found[i].begins_inside) found[i] = asked_of_elements(before.rays[i], &visits[i]);
+    found[i] = asked_again(found[i], before.rays[i], &visits[i]);
     records[i] = record_of(visits[i], found[i].undecided, std::min({found[i].t, before.plane(i).t, rays[i].t_max}));
   }
   describe(found, before.planes(), rays, hits);
 }
 
 void EmbreeSurfaces::occluded(std::span<const Ray> rays, std::span<std::uint8_t> hidden) const {
-  stream_occluded(finest(), rays, hidden);
-  if (planes_.empty()) return;
+  std::vector<PartHierarchy::Hit> any(rays.size());
+  stream_any_hits(finest(), rays, any);
   for (std::size_t i = 0; i < rays.size(); ++i)
-    if (nearest_plane(rays[i]).plane != nullptr) hidden[i] = 1;
+    hidden[i] = hides(any[i], rays[i]) || nearest_plane(rays[i]).plane != nullptr ? 1 : 0;
 }
 
 }  // namespace marrow

@@ -14,13 +14,9 @@
 #include "renderer/geometry/part_hierarchy.h"
 #include "renderer/geometry/solid.h"
 #include "renderer/geometry/surfaces.h"
+#include "renderer/geometry/united_solids.h"
 
 namespace marrow {
-
-struct PlacedSolid {
-  std::unique_ptr<Solid> solid;
-  ObjectId object;
-};
 
 struct PlacedPlane {
   Vec3d point;
@@ -49,7 +45,7 @@ class EmbreeSurfaces final : public Surfaces {
 
  private:
   EmbreeSurfaces(std::vector<PlacedSolid> solids, std::vector<PlacedPlane> planes)
-      : solids_(std::move(solids)), planes_(std::move(planes)) {}
+      : solids_(std::move(solids)), planes_(std::move(planes)), united_(solids_) {}
   // How finely space is divided: a ray meets a box with a probability that goes with its area.
   struct Division {
     std::size_t parts = 0;
@@ -77,9 +73,13 @@ class EmbreeSurfaces final : public Surfaces {
     std::vector<PlaneHit> planes_;  // none where there are no planes
     std::vector<Ray> shorter_;
   };
-  PartHierarchy::Hit asked_of_elements(const Ray&, std::vector<RayVisit>*) const;
+  PartHierarchy::Hit asked_again(PartHierarchy::Hit, const Ray&, std::vector<RayVisit>*) const;
+  bool hides(const PartHierarchy::Hit& any, const Ray&) const;
   PartHierarchy::Hit nearest_on(const Ray&, std::vector<RayVisit>*) const;
   const PartHierarchy& finest() const { return *finest_.load(std::memory_order_acquire); }
+  bool is_cut_off(const Ray&, const SurfaceHit&) const;
+  void uncover_start(std::size_t solid, const Ray&, SurfaceHit&) const;
+  void free_start(std::size_t solid, const Ray&, SurfaceHit&) const;
   std::optional<SurfaceHit> hit_of(const PartHierarchy::Hit&, const PlaneHit& behind, const Ray&) const;
   // `behind`: the planes of all rays, or none at all.
   void describe(std::span<const PartHierarchy::Hit>, std::span<const PlaneHit> behind, std::span<const Ray>,
@@ -89,6 +89,7 @@ class EmbreeSurfaces final : public Surfaces {
 
   std::vector<PlacedSolid> solids_;
   std::vector<PlacedPlane> planes_;
+  UnitedSolids united_;
   Box3 extent_;  // of all solids
   EmbreeDevice device_;
   std::unique_ptr<const PartHierarchy> whole_;  // of whole elements

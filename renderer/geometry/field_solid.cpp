@@ -40,6 +40,17 @@ Box3 FieldSolid::extent() const {
   return skeletons.empty() ? skeletons : to_world(skeletons.padded(largest_radius(tracer_->field())));
 }
 
+Box3 FieldSolid::reach() const {
+  const Box3& tiles = tracer_->bounds();
+  return tiles.empty() ? tiles : to_world(tiles);
+}
+
+FieldSample FieldSolid::sample(const Vec3d& p) const {
+  const BlendSample s = evaluate(tracer_->field(), in_world_ ? p : local_from_world_.point(p));
+  return {.value = s.corrected,
+          .gradient = in_world_ ? s.corrected_gradient : local_from_world_.transposed(s.corrected_gradient)};
+}
+
 Box3 FieldSolid::to_world(const Box3& local) const {
   if (in_world_) return local;
   Box3 box;
@@ -87,7 +98,7 @@ std::optional<double> FieldSolid::traced(const Place& place, const Ray& ray, boo
 
 std::optional<double> FieldSolid::hit(std::size_t element, const Ray& ray, bool any, ElementLog& log) const {
   const auto t = traced(element, ray, any, log);
-  log.begins_inside = false;  // the element has been told
+  if (!any) log.begins_inside = false;  // the element has been told
   return t;
 }
 
@@ -126,7 +137,7 @@ void FieldSolid::hits_in_parts(std::span<const LanesInPart> parts, const RayPack
   for (const auto& [part, in_part] : parts)
     for_each_lane(in_part, [&](std::size_t i) {
       to_world(cells.log[i], stretch[i], before[i], log.lanes[i]);
-      if (part->within == nullptr) log.lanes[i].begins_inside = false;  // as of an element in hit()
+      if (part->within == nullptr && !any) log.lanes[i].begins_inside = false;  // as of an element in hit()
       log.lanes[i].place = cells.hit[i].block;
       const double t = std::max(packet.t_min[i], cells.hit[i].t / stretch[i]);
       const bool met = cells.hit[i].block != nullptr && (any || t <= packet.t_max[i]);

@@ -19,6 +19,8 @@ class FieldSolid final : public Solid {
   std::size_t element_count() const override { return tracer_->tile_count(); }
   Box3 element_box(std::size_t) const override;
   Box3 extent() const override;
+  Box3 reach() const override;
+  FieldSample sample(const Vec3d&) const override;
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
   std::vector<SolidPart> parts() const override;
   std::optional<double> hit_in_part(const SolidPart&, const Ray&, bool any, ElementLog&) const override;

@@ -20,6 +20,7 @@ struct Query : RTCIntersectContext {
   explicit Query(std::span<StreamedRay* const> of_stream) : stream(of_stream) { rtcInitIntersectContext(this); }
   PartVisit* single = nullptr;
   std::span<StreamedRay* const> stream;  // Embree names a ray by its place here
+  ObjectId left_out;
 };
 
 // Embree's t of a place on the ray, behind the place itself, also where that is the ray's beginning: a box that holds a
@@ -73,12 +74,15 @@ void intersect_callback(const RTCIntersectFunctionNArguments* a) {
 }
 
 void occluded_callback(const RTCOccludedFunctionNArguments* a) {
-  const PartVisit& visit = *static_cast<const Query*>(a->context)->single;
+  const auto& q = *static_cast<const Query*>(a->context);
+  PartVisit& visit = *q.single;
   const PartsOfSolid& of = parts_of(a->geometryUserPtr);
   const SolidPart& part = of.parts[a->primID];
-  if (visit.in(part.box).empty()) return;
+  if (of.object == q.left_out || visit.in(part.box).empty()) return;
   ElementLog log = visit.before(*of.solid);
-  if (of.solid->hit_in_part(part, visit.ray, true, log)) RTCRayN_tfar(a->ray, a->N, 0) = done;
+  visit.best.found |= of.solid->hit_in_part(part, visit.ray, true, log).has_value();
+  visit.note_side(*of.solid, log);
+  if (visit.best.found || log.begins_inside) RTCRayN_tfar(a->ray, a->N, 0) = done;
 }
 
 // For Embree, which takes the inverse of what is smaller for that of +1e-18, also where it is negative: a packet with
@@ -185,13 +189,14 @@ PartHierarchy::Hit PartHierarchy::first_hit(const Ray& ray, std::vector<RayVisit
   return visit.best;
 }
 
-bool PartHierarchy::occluded(const Ray& ray) const {
+PartHierarchy::Hit PartHierarchy::any_hit(const Ray& ray, ObjectId but) const {
   PartVisit visit(ray);
   RTCRay r{};
-  if (!start(padded_bounds_, visit, reinterpret_cast<RTCRayN*>(&r), 1, 0)) return false;
+  if (!start(padded_bounds_, visit, reinterpret_cast<RTCRayN*>(&r), 1, 0)) return {};
   Query q(visit);
+  q.left_out = but;
   rtcOccluded1(scene_.get(), &q, &r);
-  return r.tfar < 0;
+  return visit.best;
 }
 
 void PartHierarchy::find_parts(std::span<StreamedRay* const> rays) const {

@@ -20,6 +20,7 @@ namespace marrow {
 /// Parts of one solid; it must outlive the hierarchy.
 struct PartsOfSolid {
   const Solid* solid = nullptr;
+  ObjectId object;
   std::vector<SolidPart> parts;
 };
 
@@ -32,7 +33,8 @@ class PartHierarchy {
   /// The smallest t wins; at equal t the lower solid, the lower element, the part entered first: the order of traversal
   /// shows nowhere. `visits` grows, if there is one.
   Hit first_hit(const Ray&, std::vector<RayVisit>* visits = nullptr) const;
-  bool occluded(const Ray&) const;
+  /// `found`: something is in the way, of another object than `but`; the rest does not count, but `begins_inside`.
+  Hit any_hit(const Ray&, ObjectId but = {}) const;
 
   static constexpr std::size_t most_together = 16;
   /// The nearest parts ahead of each of at most `most_together` rays; sooner when they are neighbours.

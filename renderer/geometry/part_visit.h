@@ -56,12 +56,17 @@ class PartVisit {
     return log;
   }
 
-  /// Takes in what a part answered; t is infinity when it holds no hit. Whether `best` is a new hit.
-  bool take(std::size_t index, const Solid& solid, const SolidPart& part, double t, const ElementLog& log) {
+  /// Takes in only what a part of the solid said of the ray's beginning.
+  void note_side(const Solid& solid, const ElementLog& log) {
     outside_of_ = &solid;
     outside_from_ = log.outside_from;
-    best.undecided = std::min(best.undecided, log.undecided);
     best.begins_inside |= log.begins_inside;
+  }
+
+  /// Takes in what a part answered; t is infinity when it holds no hit. Whether `best` is a new hit.
+  bool take(std::size_t index, const Solid& solid, const SolidPart& part, double t, const ElementLog& log) {
+    note_side(solid, log);
+    best.undecided = std::min(best.undecided, log.undecided);
     if (!(t < std::numeric_limits<double>::infinity()) || t > best.t) return false;
     if (t == best.t && std::tuple(index, part.element, log.enter) > std::tuple(best.solid, best.element, best.enter))
       return false;

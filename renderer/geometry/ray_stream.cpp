@@ -160,14 +160,14 @@ void stream_first_hits(const PartHierarchy& hierarchy, std::span<const Ray> rays
   for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = stream.rays()[i].visit.best;
 }
 
-void stream_occluded(const PartHierarchy& hierarchy, std::span<const Ray> rays, std::span<std::uint8_t> hidden) {
+void stream_any_hits(const PartHierarchy& hierarchy, std::span<const Ray> rays, std::span<PartHit> hits) {
   if (!worth_streaming(hierarchy, rays)) {
-    for (std::size_t i = 0; i < rays.size(); ++i) hidden[i] = hierarchy.occluded(rays[i]) ? 1 : 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = hierarchy.any_hit(rays[i]);
     return;
   }
   Stream stream(hierarchy, true, rays);
   stream.run();
-  for (std::size_t i = 0; i < rays.size(); ++i) hidden[i] = stream.rays()[i].finished ? 1 : 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = stream.rays()[i].visit.best;
 }
 
 }  // namespace marrow

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "field/math/box3.h"
 #include "field/math/ray.h"
 #include "field/math/ray_packet.h"
+#include "field/program/field_program.h"
 #include "field/trace/ray_visit.h"
 #include "renderer/geometry/surfaces.h"
 
@@ -24,7 +26,8 @@ struct ElementLog {
   double undecided = std::numeric_limits<double>::infinity();     ///< the first place that could not be decided
   const void* place = nullptr;                                    ///< of a hit in the element, for describe()
   double outside_from = std::numeric_limits<double>::infinity();  ///< CellLog's, from part to part of one solid
-  bool begins_inside = false;               ///< of a part: the ray begins inside, and elements have to be asked instead
+  /// Of a part: the ray begins inside, and elements have to be asked instead; with `any` the nearest hit.
+  bool begins_inside = false;
   std::vector<RayVisit>* visits = nullptr;  ///< grows by those with evaluations, if there is one
 };
 
@@ -64,6 +67,10 @@ class Solid {
   virtual Box3 element_box(std::size_t element) const = 0;
   /// About the extent of the body itself; a property of the scene, not of how its space is divided.
   virtual Box3 extent() const = 0;
+  /// Holds all that is inside; empty where nothing is, as of a mesh.
+  virtual Box3 reach() const { return {}; }
+  /// The exact field, 1 on the surface, whatever is traced.
+  virtual FieldSample sample(const Vec3d&) const { return {}; }
   /// t of the first hit in an element, in [ray.t_min, ray.t_max] but not depending on t_max; any hit with `any`.
   virtual std::optional<double> hit(std::size_t element, const Ray&, bool any, ElementLog&) const = 0;
   /// The elements, or what they are known to consist of by now; together they hold all surface. Whatever rays are under
@@ -81,6 +88,11 @@ class Solid {
   virtual void describe(std::span<const HitToDescribe>) const = 0;
   virtual std::size_t primitive_count() const = 0;
   virtual std::size_t bytes() const = 0;
+};
+
+struct PlacedSolid {
+  std::unique_ptr<Solid> solid;
+  ObjectId object;
 };
 
 inline std::vector<SolidPart> Solid::parts() const {

@@ -18,10 +18,12 @@ struct StreamedRay {
   /// Takes in what a part answered; `t` as in PartVisit.
   void take(std::size_t index, const Solid& solid, const SolidPart& part, double t, const ElementLog& log, bool any) {
     if (any) {
-      finished |= t < std::numeric_limits<double>::infinity();
-      return;
+      visit.note_side(solid, log);
+      visit.best.found |= t < std::numeric_limits<double>::infinity();
+      finished |= visit.best.found;
+    } else {
+      visit.take(index, solid, part, t, log);
     }
-    visit.take(index, solid, part, t, log);
     finished |= log.begins_inside;
   }
 };

@@ -16,6 +16,8 @@ class TreeSolid final : public Solid {
   std::size_t element_count() const override { return tracer_.cell_count(); }
   Box3 element_box(std::size_t element) const override { return tracer_.cell_box(element); }
   Box3 extent() const override { return tracer_.bounds(); }
+  Box3 reach() const override { return tracer_.bounds(); }
+  FieldSample sample(const Vec3d&) const override;
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
   void describe(std::span<const HitToDescribe>) const override;
   std::size_t primitive_count() const override;

@@ -132,7 +132,7 @@ class BlockSearch {
           surely_inside_ | in_levels<&BlockView::fine>(near, [&](std::uint64_t rays) { return decide_all(rays); });
       r.hit |= met;
       const std::uint64_t unknown = met & ~r.begins_outside;
-      if (!any_root_ && unknown != 0) find_sides(unknown);
+      if (unknown != 0) find_sides(unknown);
       open &= ~met;
       open &= next_runs(open);
     }

@@ -67,17 +67,21 @@ inline RootOf<float> root_in(const BlockView& block, const LocalRay& ray, const 
   return root;
 }
 
-// Where a ray leaves that is inside at t0.
+// Where a ray leaves that is inside at t0. What lies behind the run takes the ray to be outside already where it leaves
+// at the very end: the search goes a few of the shortest gaps beyond it.
 template <Angle Rule>
 inline RootOf<float> exit_in(const BlockView& block, const LocalRay& ray, const Run<float>& run,
-                             const AngleSource<Rule, float>& angle, bool any_root) {
+                             const AngleSource<Rule, float>& angle) {
+  constexpr float gaps_beyond = 4;
   const LevelOf<float> fine(block.fine());
   Marcher<Rule> march(block, fine, ray, angle);
   march.exits = true;
-  Search<Rule> search(march, run.begin, run.end);
-  search.record(true, march.sample(run.begin, true));
+  const SampleOf<Rule> first = march.sample(run.begin, true);
+  const float distance_at_end = first.distance + (run.end - run.begin);
+  Search<Rule> search(march, run.begin, run.end + gaps_beyond * shortest_gap * distance_at_end);
+  search.record(true, first);
   RootOf<float> root;
-  if (!search.missed()) root = decide(search, search.guess(), any_root);
+  if (!search.missed()) root = decide(search, search.guess(), false);
   root.evaluations = march.evaluations;
   return root;
 }
@@ -86,17 +90,18 @@ inline RootOf<float> exit_in(const BlockView& block, const LocalRay& ray, const 
 // be outside for it is then no more than 1e-5 deep.
 inline constexpr float clearly_inside = 5e-6F;
 
-// Whether the ray is inside at t, by the coarse level where that can tell.
+// Whether the ray is inside at t, where a run begins, by the coarse level where that can tell. Where it is hardly so
+// the exact field tells how the ray began.
 template <Angle Rule>
 inline bool is_inside(const BlockView& block, const LocalRay& ray, float t, const AngleSource<Rule, float>& angle) {
   const LevelOf<float> coarse(block.coarse());
   Marcher<Rule> rough(block, coarse, ray, angle);
   const SampleOf<Rule> p = rough.sample(t, true);
   if (p.residual > 0) return false;
-  if (p.nominal < -clearly_inside && rough.inside_at(p, 0)) return true;
+  if (p.nominal < 0 && rough.inside_at(p, 0)) return true;
   const LevelOf<float> fine(block.fine());
   Marcher<Rule> march(block, fine, ray, angle);
-  return march.sample(t, true).nominal < -clearly_inside;
+  return march.sample(t, true).nominal < 0;
 }
 
 // A ray that begins at a surface is too near for the coarse level: one fine certificate leads away. Returns the rays
@@ -120,7 +125,7 @@ inline MaskOf<F> leave_surface(const BlockView& block, const LevelOf<F>& fine, c
   const SampleOf<Rule, F> first = march.sample(query.t0, rays);
   const Mask inside = rays & (first.nominal < -clearly_inside), outside = rays & !inside;
   root.hit = inside;
-  if (!query.any) root.enters_inside = inside;
+  root.enters_inside = inside;
   root.t = select(inside, query.t0, root.t);
   root.begins_outside = root.begins_outside | outside;
   start.record(outside, first);
@@ -141,7 +146,7 @@ inline RootOf<float> first_root_of(const BlockView& block, const LocalRay& ray, 
   Run<float> run;
   while (!root.hit && runs.next(true, run)) {
     const AngleOf<Rule, float> angle = angle_from<Rule>(runs.patches, ray, run.begin);
-    const RootOf<float> found = query.leaving ? exit_in<Rule>(block, ray, run, angle.source, query.any)
+    const RootOf<float> found = query.leaving ? exit_in<Rule>(block, ray, run, angle.source)
                                               : root_in<Rule>(block, ray, run, angle.source, query.any);
     root.hit = found.hit;
     if (found.hit) root.t = found.t;
@@ -149,8 +154,7 @@ inline RootOf<float> first_root_of(const BlockView& block, const LocalRay& ray, 
     if (root.evaluations == 0) root.searched_from = run.begin;
     root.evaluations += found.evaluations;
     root.begins_outside |= found.begins_outside;
-    // Any root will do: a ray that begins inside meets one where it leaves.
-    if (found.hit && !root.begins_outside && !query.leaving && !query.any)
+    if (found.hit && !root.begins_outside && !query.leaving)
       root.enters_inside = is_inside<Rule>(block, ray, run.begin, angle.source);
   }
   return root;

@@ -1,0 +1,190 @@
+#include "renderer/geometry/united_solids.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace marrow {
+namespace {
+
+// Of values near 1: more than sums of floats put a hit off. So far inside none of them takes a place to be outside.
+constexpr double clearly = 1e-5, surely = 1e-3;
+// What doubles may round.
+constexpr double least_margin = 1e-12;
+
+// What a solid stepped off its surface, or, where it found no step, what places there are rounded by.
+double first_step(const SurfaceHit& hit, const Box3& reach) {
+  return std::max(length(hit.outside - hit.position), std::ldexp(largest_coordinate(reach), -48));
+}
+
+bool overlap(const Box3& a, const Box3& b) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!(a.lower[i] <= b.upper[i] && b.lower[i] <= a.upper[i])) return false;
+  return true;
+}
+
+Vec3d outward(const FieldSample& s) {
+  const double steepness = length(s.gradient);
+  return steepness > 0 ? s.gradient / -steepness : Vec3d{};
+}
+
+}  // namespace
+
+UnitedSolids::UnitedSolids(std::span<const PlacedSolid> solids) {
+  std::map<ObjectId, std::size_t> bodies;
+  for (const PlacedSolid& placed : solids) {
+    const std::size_t body = bodies.try_emplace(placed.object, bodies.size()).first->second;
+    if (body == bodies_.size()) {
+      bodies_.emplace_back();
+      extents_.push_back({placed.object, {}});
+    }
+    bodies_[body].push_back(solids_.size());
+    solids_.push_back({placed.solid.get(), placed.solid->reach(), body});
+    extents_[body].box.include(placed.solid->extent());
+    extents_[body].box.include(placed.solid->reach());
+  }
+}
+
+// use(index) of those whose boxes hold p; it says whether to go on.
+template <class Use>
+void UnitedSolids::for_each_other(std::size_t solid, const Vec3d& p, const Use& use) const {
+  for (const std::size_t other : bodies_[solids_[solid].body])
+    if (other != solid && solids_[other].reach.contains(p) && !use(other)) return;
+}
+
+std::optional<std::size_t> UnitedSolids::cover_of(const PartHit& hit, const Ray& ray) const {
+  std::optional<std::size_t> cover;
+  const Vec3d p = ray.at(hit.t);
+  for_each_other(hit.solid, p, [&](std::size_t other) {
+    if (solids_[other].solid->sample(p).value > 1 + clearly) cover = other;
+    return !cover;
+  });
+  return cover;
+}
+
+// A ray that begins outside all others has met none of them before its first hit.
+bool UnitedSolids::is_covered(const PartHit& hit, const Ray& ray) const {
+  if (!hit.found) return false;
+  bool may_begin_inside = false;
+  for_each_other(hit.solid, ray.at(ray.t_min), [&](std::size_t) {
+    may_begin_inside = true;
+    return false;
+  });
+  return may_begin_inside && cover_of(hit, ray);
+}
+
+bool UnitedSolids::begins_inside(const Ray& ray) const {
+  const Vec3d begin = ray.at(ray.t_min);
+  return std::ranges::any_of(bodies_, [&](const Body& body) { return body.size() > 1 && largest_at(body, begin) > 1; });
+}
+
+PartHit UnitedSolids::nearest(std::span<const std::size_t> solids, const Ray& ray,
+                              std::vector<RayVisit>* visits) const {
+  PartVisit visit(ray);
+  visit.visits = visits;
+  for (const std::size_t s : solids) {
+    const Solid& solid = *solids_[s].solid;
+    for (std::size_t element = 0; element < solid.element_count(); ++element) {
+      ElementLog log = visit.before(solid);
+      const auto t = solid.hit(element, ray, false, log);
+      visit.take(s, solid, {.element = element}, t.value_or(std::numeric_limits<double>::infinity()), log);
+    }
+  }
+  return visit.best;
+}
+
+// Of a ray that is inside at t. It is asked for from where it is surely inside, or deepest by growing steps.
+PartHit UnitedSolids::exit_of(std::size_t cover, const Ray& ray, double t, std::vector<RayVisit>* visits) const {
+  const Solid& solid = *solids_[cover].solid;
+  Ray onward = ray;
+  onward.t_min = t;
+  double deepest = solid.sample(ray.at(t)).value;
+  for (double step = 1e-9 * max_component(solids_[cover].reach.size()); deepest < 1 + surely; step *= 2) {
+    const double value = solid.sample(ray.at(t + step)).value;
+    if (!(value > deepest)) break;
+    deepest = value;
+    onward.t_min = t + step;
+  }
+  return nearest(std::array{cover}, onward, visits);
+}
+
+PartHit UnitedSolids::uncovered(PartHit hit, const Ray& ray, std::vector<RayVisit>* visits) const {
+  while (hit.found) {
+    const auto cover = cover_of(hit, ray);
+    if (!cover) break;
+    PartHit exit = exit_of(*cover, ray, hit.t, visits);
+    exit.undecided = std::min(exit.undecided, hit.undecided);
+    if (exit.found && !(exit.t > hit.t)) break;
+    hit = exit;
+  }
+  return hit;
+}
+
+PartHit UnitedSolids::first_hit(const Ray& ray, std::vector<RayVisit>* visits) const {
+  PartHit best;
+  for (const Body& body : bodies_) {
+    PartHit hit = uncovered(nearest(body, ray, visits), ray, visits);
+    hit.undecided = best.undecided = std::min(best.undecided, hit.undecided);
+    if (hit.found && (hit.t < best.t || (hit.t == best.t && hit.solid < best.solid))) best = hit;
+  }
+  return best;
+}
+
+double UnitedSolids::largest_at(const Body& body, const Vec3d& p) const {
+  double largest = 0;
+  for (const std::size_t s : body)
+    if (solids_[s].reach.contains(p)) largest = std::max(largest, solids_[s].solid->sample(p).value);
+  return largest;
+}
+
+// Away from both, back along the ray or on along it, or, where two all but touch, to a side: the first of growing steps
+// that is outside all of the body.
+void UnitedSolids::free_start(std::size_t solid, const Ray& ray, SurfaceHit& hit) const {
+  FieldSample nearest;
+  for_each_other(solid, hit.outside, [&](std::size_t other) {
+    const FieldSample s = solids_[other].solid->sample(hit.outside);
+    if (s.value > nearest.value) nearest = s;
+    return true;
+  });
+  if (!(nearest.value > 1 - clearly)) return;
+  const Vec3d normal = hit.normal, away = outward(nearest), back = -ray.direction.vec();
+  const Body& body = bodies_[solids_[solid].body];
+  const Box3& reach = solids_[solid].reach;
+  const double first = first_step(hit, reach), longest = 1e-2 * max_component(reach.size());
+  const Frame frame = Frame::around(hit.normal);
+  for (const double margin : {3 * clearly, least_margin})
+    for (const Vec3d& way : {normal + away, back, away + back, normal + back, away, -back, frame.to_world({1, 0, 0}),
+                             frame.to_world({-1, 0, 0}), frame.to_world({0, 1, 0}), frame.to_world({0, -1, 0})})
+      for (double step = first; length_squared(way) > 0 && step < std::max(longest, 16 * first); step *= 2)
+        if (const Vec3d p = hit.position + way * step; largest_at(body, p) < 1 - margin) {
+          hit.outside = p;
+          return;
+        }
+}
+
+std::optional<Vec3d> UnitedSolids::start_before(std::size_t solid, const Ray& ray, const SurfaceHit& hit) const {
+  if (!(dot(ray.direction, hit.normal) < 0)) return {};
+  const Box3& reach = solids_[solid].reach;
+  const double longest = std::min(hit.t - ray.t_min, 1e-2 * max_component(reach.size()));
+  if (!(longest > 0)) return {};
+  for (const double margin : {3 * clearly, least_margin})
+    for (double step = std::min(first_step(hit, reach), longest); step <= longest; step *= 2)
+      if (const Vec3d p = hit.position - ray.direction * step; largest_at(bodies_[solids_[solid].body], p) < 1 - margin)
+        return p;
+  return {};
+}
+
+bool UnitedSolids::may_part(const Vec3d& a, const Vec3d& b, ObjectId of) const {
+  constexpr std::size_t quickly_asked = 16;
+  if (extents_.size() > quickly_asked) return true;
+  Box3 between{a, a};
+  between.include(b);
+  return std::ranges::any_of(extents_, [&](const Extent& e) { return e.object != of && overlap(e.box, between); });
+}
+
+bool UnitedSolids::is_outside(std::size_t solid, const Vec3d& p) const {
+  return largest_at(bodies_[solids_[solid].body], p) < 1 - least_margin;
+}
+
+}  // namespace marrow
