@@ -98,17 +98,12 @@ void expect_same_in_tiles(const BlendTracer& tracer, const Rays& rays, LaneSet a
   }
 }
 
-// Each ray in a part of its own, or with some others.
-void expect_same_in_mixed_parts(const BlendTracer& tracer, const Rays& rays, LaneSet asked, bool any, Random& random) {
-  const std::vector<TracePart> parts = tracer.parts();
-  if (parts.empty()) return;
-  const int last = static_cast<int>(parts.size()) - 1, some = std::min(last, random.whole(0, 20));
+using Places = std::array<std::size_t, RayPacket::size>;  // the part of each ray
+
+void expect_same_in_parts(const BlendTracer& tracer, const std::vector<TracePart>& parts, const Places& part_of,
+                          const Rays& rays, LaneSet asked, bool any) {
   std::map<std::size_t, LaneSet> in_part;
-  std::array<std::size_t, RayPacket::size> part_of{};
-  for_each_lane(asked, [&](std::size_t i) {
-    part_of[i] = static_cast<std::size_t>(last - random.whole(0, random.whole(0, 1) == 0 ? some : last));
-    in_part[part_of[i]] |= lane_bit(i);
-  });
+  for_each_lane(asked, [&](std::size_t i) { in_part[part_of[i]] |= lane_bit(i); });
   std::vector<PartRays> together;
   for (const auto& [part, lanes] : in_part) together.push_back({parts[part], lanes});
   CellHits found;
@@ -120,10 +115,33 @@ void expect_same_in_mixed_parts(const BlendTracer& tracer, const Rays& rays, Lan
   });
 }
 
+// Each in a part of its own, or with some others.
+Places mixed(Random& random, std::size_t parts) {
+  const int last = static_cast<int>(parts) - 1, some = std::min(last, random.whole(0, 20));
+  Places places;
+  for (std::size_t& place : places)
+    place = static_cast<std::size_t>(last - random.whole(0, random.whole(0, 1) == 0 ? some : last));
+  return places;
+}
+
+// Through the middles of their parts.
+Rays through(Random& random, const std::vector<TracePart>& parts, const Places& part_of) {
+  Rays rays;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Box3& box = parts[part_of[i]].box;
+    const Vec3d from = random.vector(3);
+    rays[i] = {from, normalize(box.lower + box.size() * 0.5 - from)};
+  }
+  return rays;
+}
+
 void expect_same(const BlendTracer& tracer, const Rays& rays, LaneSet asked, bool any, Compared& count) {
   expect_same_in_tiles(tracer, rays, asked, any);
   Random mixing = Random::stream(static_cast<std::uint64_t>(count.rays));
-  for (int i = 0; i < 2; ++i) expect_same_in_mixed_parts(tracer, rays, asked, any, mixing);
+  const std::vector<TracePart> parts = tracer.parts();
+  const Places places = mixed(mixing, parts.size());
+  expect_same_in_parts(tracer, parts, places, rays, asked, any);
+  expect_same_in_parts(tracer, parts, places, through(mixing, parts, places), asked, any);
   const RayPacket packet(rays);
   std::array<double, RayPacket::size> outside_from{};
   outside_from.fill(std::numeric_limits<double>::infinity());
@@ -177,6 +195,25 @@ TEST_P(Packets, FindWhatSingleRaysFind) {
 INSTANTIATE_TEST_SUITE_P(Trace, Packets,
                          testing::Values(Setting{3, 1.0}, Setting{4, contact_alpha(4)}, Setting{4, -0.4},
                                          Setting{4, std::numbers::pi / 2}, Setting{5, 0}, Setting{7, 1.2}));
+
+// Then the levels of two cells of a packet may lie in the same memory, one after the other.
+TEST(PacketsWithoutKeptLevels, FindWhatSingleRaysFind) {
+  Random random(4713);
+  const BlendField blend = random_scene(random, {4, contact_alpha(4)}, 7);
+  for (const std::string& set : sets_here()) {
+    auto made = BlendTracer::make(blend, {.instruction_set = set, .kept_bytes = 0, .recipe_bytes = 0});
+    ASSERT_TRUE(made);
+    const BlendTracer& tracer = **made;
+    for (int i = 0; i < 200; ++i) first_hit(tracer, any_ray(random, blend));
+    const std::vector<TracePart> parts = tracer.parts();
+    std::cout << "  " << set << ": " << parts.size() << " parts\n";
+    for (int i = 0; i < 12; ++i) {
+      const bool any = random.whole(0, 1) == 0;
+      const Places places = mixed(random, parts.size());
+      expect_same_in_parts(tracer, parts, places, through(random, parts, places), all, any);
+    }
+  }
+}
 
 TEST(PacketsOfVariedAngles, FindWhatSingleRaysFind) {
   Random random(4712);
