@@ -292,7 +292,7 @@ struct BlockKernels {
   /// Where rays are in a cell, if they come into it: their `enter` and `exit`. Returns those that do.
   std::uint64_t (*enter_cell)(const CellPlace&, const PacketView&, std::uint64_t asked, bool any, CellRoots&);
   /// first_root() for each ray in its cell, from `enter` to `exit`, where skeletons have no angle each, to the same
-  /// bits. Where directions give the angle there must be one cell alone.
+  /// bits.
   void (*roots_between)(const CellRays* cells, int count, const PacketView&, bool any, PacketMemory&, CellRoots&);
   PointField (*point_field)(const FieldLevel&, int degree, const float point[3]);
   /// Of the first `count` lanes.

@@ -77,10 +77,7 @@ void add_to(CellLog& log, const CellRoots& roots, std::size_t lane) {
 class BlendTracer::CellGroup {
  public:
   CellGroup(const BlendTracer& tracer, const RayPacket& packet, bool any)
-      : kernels_(tracer.state_->kernels),
-        most_(tracer.state_->strands ? 1 : RayPacket::size),
-        rays_(view_of(packet)),
-        any_(any) {}
+      : kernels_(tracer.state_->kernels), rays_(view_of(packet)), any_(any) {}
 
   CellRoots roots;  // in: outside_from of all rays; enter and exit of those that join()
 
@@ -93,9 +90,6 @@ class BlendTracer::CellGroup {
     cells_[count_] = {&block.view(), {block.center().x, block.center().y, block.center().z}, block.half(), rays};
     members_[count_++] = {&block, key};
   }
-  // No other cell may join before the search.
-  bool is_full() const { return count_ == most_; }
-
   // Calls found(block, key, rays) for each cell: `roots` are of them. Then nobody is left.
   template <class Found>
   void search(const Found& found) {
@@ -111,7 +105,6 @@ class BlendTracer::CellGroup {
     std::size_t key;
   };
   const BlockKernels& kernels_;
-  const std::size_t most_;  // cells
   const PacketView rays_;
   const bool any_;
   std::array<CellRays, RayPacket::size> cells_;
@@ -157,7 +150,6 @@ void BlendTracer::first_hits(std::span<const PartRays> parts, const RayPacket& p
       out.log[i].side = CellLog::Side::Unknown;
     });
     group.enter(part, *block, k, rays);
-    if (group.is_full()) group.search(take);
   }
   group.search(take);
 }
@@ -227,7 +219,6 @@ LaneSet BlendTracer::hits_in(const CellSteps& steps, LaneSet rays, const RayPack
     const Block& b = block(*cell.tile, cell.slot);
     if (b.empty()) cell.tile->note_empty(cell.slot);
     else group.join(b, 0, here);
-    if (group.is_full()) group.search(take);
   }
   group.search(take);
   return hit;

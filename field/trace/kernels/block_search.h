@@ -36,6 +36,7 @@ class Lanes {
   PacketInt taken() const { return mask_of(taken_); }
 
   PacketFloat load(const float* of_packet) const { return gather(of_packet, at_); }
+  PacketInt load(const int* of_packet) const { return gather(of_packet, at_); }
   void load(PacketInt which, const float* of_packet, PacketFloat& to) const { assign(which, to, load(of_packet)); }
 #if defined(__AVX512F__)
   void store(PacketInt which, float* of_packet, PacketFloat v) const {
@@ -199,7 +200,8 @@ class BlockSearch {
       const QueryOf<PacketFloat> query{at.load(r.from), at.load(r.to), any_root_, false, here, PacketInt{}};
       RootOf<PacketFloat> root;
       PacketFloat front = query.t0;
-      const PacketInt go_on = leave_surface<Rule>(block_, level, rays, query, here, root, front);
+      const PacketInt go_on = leave_surface<Rule>(block_, BlocksOf<PacketFloat>{cells_, at.load(r.cell)}, level, rays,
+                                                  query, here, root, front);
       at.store(here, r.from, front);
       at.store(here & root.hit, r.t, root.t);
       r.hit |= at.in_packet(root.hit);
@@ -233,8 +235,9 @@ class BlockSearch {
       const PacketRays ray = rays_of_group(i);
       PacketInt cell;
       __builtin_memcpy(&cell, r.cell + packet_lanes * i, sizeof cell);
+      const BlocksOf<PacketFloat> blocks{cells_, cell};
       own_->runs[i] =
-          Runs<Rule, PacketFloat>(block_, SlotBits<PacketFloat>(cells_, own_->slots, cell), ray,
+          Runs<Rule, PacketFloat>(blocks, SlotBits<PacketFloat>(blocks, own_->slots), ray,
                                   load_native(r.from + packet_lanes * i), load_native(r.to + packet_lanes * i));
     }
   }

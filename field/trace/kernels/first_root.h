@@ -107,8 +107,9 @@ inline bool is_inside(const BlockView& block, const LocalRay& ray, float t, cons
 // A ray that begins at a surface is too near for the coarse level: one fine certificate leads away. Returns the rays
 // that are to go on from `front`; those that end here have a hit, or nothing.
 template <Angle Rule, class F>
-inline MaskOf<F> leave_surface(const BlockView& block, const LevelOf<F>& fine, const RayOf<F>& ray,
-                               const QueryOf<F>& query, MaskOf<F> rays, RootOf<F>& root, F& front) {
+inline MaskOf<F> leave_surface(const BlockView& block, const BlocksOf<F>& blocks, const LevelOf<F>& fine,
+                               const RayOf<F>& ray, const QueryOf<F>& query, MaskOf<F> rays, RootOf<F>& root,
+                               F& front) {
   using Mask = MaskOf<F>;
   Patches<F> patches;
   F end = query.t1;
@@ -116,7 +117,7 @@ inline MaskOf<F> leave_surface(const BlockView& block, const LevelOf<F>& fine, c
     const IntOf<F> layer[3] = {layer_of(ray.origin[0] + ray.direction[0] * query.t0),
                                layer_of(ray.origin[1] + ray.direction[1] * query.t0),
                                layer_of(ray.origin[2] + ray.direction[2] * query.t0)};
-    patches.find(block, rays, layer);
+    patches.find(blocks, rays, layer);
     end = min_of(end, max_of(query.t0, end_of_patch(patches, ray)));
   }
   const AngleOf<Rule, F> angle = angle_from<Rule>(patches, ray, query.t0);
@@ -140,9 +141,10 @@ inline RootOf<float> first_root_of(const BlockView& block, const LocalRay& ray, 
   float front = query.t0;
   if (!query.leaving && query.from_surface) {
     const LevelOf<float> fine(block.fine());
-    if (!leave_surface<Rule>(block, fine, ray, query, true, root, front)) return root;
+    if (!leave_surface<Rule>(block, BlocksOf<float>{&block}, fine, ray, query, true, root, front)) return root;
   }
-  Runs<Rule, float> runs(block, SlotBits<float>(block), ray, front, query.t1);
+  const BlocksOf<float> itself{&block};
+  Runs<Rule, float> runs(itself, SlotBits<float>(itself), ray, front, query.t1);
   Run<float> run;
   while (!root.hit && runs.next(true, run)) {
     const AngleOf<Rule, float> angle = angle_from<Rule>(runs.patches, ray, run.begin);

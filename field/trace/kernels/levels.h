@@ -50,6 +50,20 @@ struct LevelOf<PacketFloat> {
   alignas(64) float far_bend_[packet_lanes], far_g_bend_[packet_lanes];
 };
 
+// The block of a ray, or those of the rays in lanes.
+template <class F>
+struct BlocksOf;
+template <>
+struct BlocksOf<float> {
+  const BlockView* block;
+};
+template <>
+struct BlocksOf<PacketFloat> {
+  const CellRays* cells = nullptr;
+  PacketInt cell{};  // which of them is that of a lane
+  const BlockView& of(int lane) const { return *cells[cell[lane]].block; }
+};
+
 // The level is the field itself: it tells what is inside.
 template <class F>
 inline MaskOf<F> is_exact(const LevelOf<F>& level) {

@@ -31,7 +31,7 @@ class SlotBits;
 template <>
 class SlotBits<float> {
  public:
-  explicit SlotBits(const BlockView& block) : block_(&block) {}
+  explicit SlotBits(const BlocksOf<float>& block) : block_(block.block) {}
   bool at(const int (&layer)[3], bool active) {
     const int octant = octant_of(layer), slot = slot_in_octant(layer);
     if (!active) return false;
@@ -48,9 +48,9 @@ template <>
 class SlotBits<PacketFloat> {
  public:
   SlotBits() = default;
-  // `cell`: which of the cells, and of their words, is that of a lane.
-  SlotBits(const CellRays* cells, SlotWords* words, PacketInt cell)
-      : cells_(cells), words_(words), place_(cell * ints_per_cell) {
+  // `words`: of each cell.
+  SlotBits(const BlocksOf<PacketFloat>& blocks, SlotWords* words)
+      : cells_(blocks.cells), words_(words), place_(blocks.cell * ints_per_cell) {
     known_ = gather(ints(), place_);
   }
   PacketInt at(const PacketInt (&layer)[3], PacketInt active) {
@@ -132,9 +132,8 @@ class Runs {
  public:
   using Mask = MaskOf<F>;
 
-  // `block` gives the patches: where there are any, it is that of all rays.
-  Runs(const BlockView& block, const SlotBits<F>& slots, const RayOf<F>& ray, F t0, F t1)
-      : block_(&block), slots_(slots), t_(t0), end_(t1), ended_(!(t0 < t1)) {
+  Runs(const BlocksOf<F>& blocks, const SlotBits<F>& slots, const RayOf<F>& ray, F t0, F t1)
+      : blocks_(blocks), slots_(slots), t_(t0), end_(t1), ended_(!(t0 < t1)) {
     for (int k = 0; k < 3; ++k) layers_[k] = Layer<F>(ray.origin[k], ray.direction[k], t0);
   }
 
@@ -148,7 +147,7 @@ class Runs {
       const Mask first = surface & !found;
       Mask waits{};  // at a slot of another patch
       if constexpr (Rule == Angle::Patched) {
-        if (any(first)) patches.find(*block_, first, layer);
+        if (any(first)) patches.find(blocks_, first, layer);
         waits = surface & found & !patches.hold(layer);
       }
       assign(first, run.begin, t_);
@@ -167,7 +166,7 @@ class Runs {
   Patches<F> patches;  // of the runs that were found last
 
  private:
-  const BlockView* block_;
+  BlocksOf<F> blocks_;
   SlotBits<F> slots_;
   Layer<F> layers_[3];
   F t_, end_;

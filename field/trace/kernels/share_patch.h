@@ -44,9 +44,9 @@ struct Patches<float> {
   const SharePatch* patch = nullptr;
   int key[3], shift = 0;
 
-  void find(const BlockView& block, bool ray, const int (&layer)[3]) {
+  void find(const BlocksOf<float>& blocks, bool ray, const int (&layer)[3]) {
     if (!ray) return;
-    patch = &block.patch(layer);
+    patch = &blocks.block->patch(layer);
     shift = patch->layers_log2;
     for (int k = 0; k < 3; ++k) key[k] = layer[k] >> shift;
   }
@@ -65,14 +65,14 @@ struct Patches<PacketFloat> {
   PacketInt key[3] = {}, shift{};
   PacketFloat column[floats_per_patch];  // what the patches hold, a ray in each lane
 
-  void find(const BlockView& block, PacketInt rays, const PacketInt (&layer)[3]) {
+  void find(const BlocksOf<PacketFloat>& blocks, PacketInt rays, const PacketInt (&layer)[3]) {
     // Neighbours are mostly in one part.
     while (any(rays)) {
       const int first = __builtin_ctz(lane_bits(rays));
       const int at[3] = {layer[0][first], layer[1][first], layer[2][first]};
-      const SharePatch& found = block.patch(at);
+      const SharePatch& found = blocks.of(first).patch(at);
       const int log2 = found.layers_log2;
-      PacketInt here = rays;
+      PacketInt here = rays & (blocks.cell == blocks.cell[first]);
       for (int k = 0; k < 3; ++k) here &= layer[k] >> log2 == at[k] >> log2;
       for (unsigned left = lane_bits(here); left != 0; left &= left - 1) patch[__builtin_ctz(left)] = &found;
       for (int k = 0; k < 3; ++k) key[k] = select(here, layer[k] >> log2, key[k]);
