@@ -12,6 +12,7 @@ namespace {
 
 // Fewer rays share too little.
 constexpr std::size_t worth_a_stream = 3;
+constexpr std::size_t worth_a_packet = 9;  // fewer go one by one: where many solids take turns there are few of each
 
 template <class T>
 std::span<T> piece_of(std::span<T> all, std::size_t first, std::size_t most) {
@@ -120,7 +121,10 @@ class Stream {
   void trace() {
     RaysInLanes& in_lanes = memory_.in_lanes;
     if (in_lanes.count == 0) return;
-    hierarchy_.solid(in_lanes.solid).solid->hits_in_parts(in_lanes.parts, in_lanes.packet, any_, in_lanes.log);
+    const Solid& solid = *hierarchy_.solid(in_lanes.solid).solid;
+    if (in_lanes.count < worth_a_packet)
+      solid.Solid::hits_in_parts(in_lanes.parts, in_lanes.packet, any_, in_lanes.log);
+    else solid.hits_in_parts(in_lanes.parts, in_lanes.packet, any_, in_lanes.log);
     for (std::size_t lane = 0; lane < in_lanes.count; ++lane) {
       StreamedRay& ray = *in_lanes.rays[lane];
       take(ray, *ray.ahead.next(), in_lanes.log.t[lane], in_lanes.log.lanes[lane]);
