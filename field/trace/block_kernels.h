@@ -131,11 +131,11 @@ struct CellPlace {
   int tile_count;
 };
 
-/// The rays of a packet that are in one cell, and its block. Cells of a packet are of one blend.
+/// The rays of a packet that are in one cell, and its block. Cells of a packet are of one blend, and no ray is in two.
 struct CellRays {
   const BlockView* block;
-  double center[3], half;
-  std::uint64_t rays;
+  double center[3], half;  ///< of the block, in the coordinates of the rays
+  std::uint64_t rays;      ///< a bit for each, the lowest that of lane 0
 };
 
 /// Of each ray of a packet in its cell; in the sets of rays the lowest bit is that of lane 0.
@@ -295,7 +295,7 @@ struct BlockKernels {
   /// bits.
   void (*roots_between)(const CellRays* cells, int count, const PacketView&, bool any, PacketMemory&, CellRoots&);
   PointField (*point_field)(const FieldLevel&, int degree, const float point[3]);
-  /// Of the first `count` lanes.
+  /// Finds `growth` and `step` of the first `count` lanes (B3 and B4 of tracing.md).
   void (*surface_starts)(const SurfaceRule&, int count, SurfaceLanes&);
   /// Through the slots of a set, in coordinates of the cube of 4 x 4 x 4 slots, [-1, 1]^3.
   void (*walk)(std::uint64_t slots, const LocalRay&, float t0, float t1, Walk&);

@@ -122,8 +122,8 @@ class Stream {
     RaysInLanes& in_lanes = memory_.in_lanes;
     if (in_lanes.count == 0) return;
     const Solid& solid = *hierarchy_.solid(in_lanes.solid).solid;
-    if (in_lanes.count < worth_a_packet)
-      solid.Solid::hits_in_parts(in_lanes.parts, in_lanes.packet, any_, in_lanes.log);
+    const bool few = in_lanes.count < worth_a_packet;
+    if (few) solid.hits_one_by_one(in_lanes.parts, in_lanes.packet, any_, in_lanes.log);
     else solid.hits_in_parts(in_lanes.parts, in_lanes.packet, any_, in_lanes.log);
     for (std::size_t lane = 0; lane < in_lanes.count; ++lane) {
       StreamedRay& ray = *in_lanes.rays[lane];

@@ -1,4 +1,4 @@
-// Many rays together: those that come to the same part are traced there side by side, whatever way they came.
+// Many rays together: they wait at the parts that they come to, and those of part after part are traced side by side.
 #pragma once
 
 #include <span>

@@ -69,7 +69,7 @@ class Solid {
   virtual Box3 extent() const = 0;
   /// Holds all that is inside; empty where nothing is, as of a mesh.
   virtual Box3 reach() const { return {}; }
-  /// The exact field, 1 on the surface, whatever is traced.
+  /// The exact field in world units, 1 on the surface, whatever is traced; 0 where reach() is empty.
   virtual FieldSample sample(const Vec3d&) const { return {}; }
   /// t of the first hit in an element, in [ray.t_min, ray.t_max] but not depending on t_max; any hit with `any`.
   virtual std::optional<double> hit(std::size_t element, const Ray&, bool any, ElementLog&) const = 0;
@@ -83,7 +83,12 @@ class Solid {
   /// Whether rays are traced sooner together than one by one.
   virtual bool traces_packets() const { return false; }
   /// hit_in_part() for rays of a packet, each in one of the parts, to the same bits; `log` is of these lanes only.
-  virtual void hits_in_parts(std::span<const LanesInPart>, const RayPacket&, bool any, PacketLog& log) const;
+  virtual void hits_in_parts(std::span<const LanesInPart> parts, const RayPacket& packet, bool any,
+                             PacketLog& log) const {
+    hits_one_by_one(parts, packet, any, log);
+  }
+  /// The same, sooner where there are few rays.
+  void hits_one_by_one(std::span<const LanesInPart>, const RayPacket&, bool any, PacketLog& log) const;
   /// Fills normal, outside and material of hits whose positions are known.
   virtual void describe(std::span<const HitToDescribe>) const = 0;
   virtual std::size_t primitive_count() const = 0;
@@ -101,8 +106,8 @@ inline std::vector<SolidPart> Solid::parts() const {
   return parts;
 }
 
-inline void Solid::hits_in_parts(std::span<const LanesInPart> parts, const RayPacket& packet, bool any,
-                                 PacketLog& log) const {
+inline void Solid::hits_one_by_one(std::span<const LanesInPart> parts, const RayPacket& packet, bool any,
+                                   PacketLog& log) const {
   for (const auto& [part, lanes] : parts)
     for_each_lane(lanes, [&](std::size_t lane) {
       const auto t = hit_in_part(*part, packet.ray(lane), any, log.lanes[lane]);

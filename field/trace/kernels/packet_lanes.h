@@ -1,0 +1,75 @@
+// What is kept of the rays of a packet, and which of them is in which lane. Part of block_kernels_<set>.cpp.
+
+// The rays of a packet on their ways through their blocks, in the coordinates of these.
+struct BlockRays {
+  alignas(64) float origin[3][packet_size], direction[3][packet_size];
+  alignas(64) float from[packet_size], to[packet_size];
+  alignas(64) float begin[packet_size], end[packet_size];    // of the run where each is
+  alignas(64) float front[packet_size], guess[packet_size];  // where the fine level begins, and looks first
+  alignas(64) float searched_from[packet_size];              // as in Root
+  alignas(64) float t[packet_size], undecided[packet_size];
+  alignas(64) int evaluations[packet_size];
+  alignas(64) int cell[packet_size];
+  alignas(64) float share[SharePatch::degree + 1][packet_size];  // ShareOnRun of the run, where patches give the angle
+  std::uint64_t from_surface;                                    // as in QueryOf
+  std::uint64_t begins_outside, enters_inside, hit;              // as in RootOf
+};
+
+// Which ray of the packet is in which lane: when one has ended, another one takes its place.
+class Lanes {
+ public:
+  // In as many free lanes as there are rays; takes these away from the set. Returns the lanes.
+  PacketInt seat(std::uint64_t& waiting) {
+    unsigned seated = 0;
+    alignas(64) int at[packet_lanes];
+    __builtin_memcpy(at, &at_, sizeof at);
+    for (unsigned free = ~taken_ & all_lane_bits; free != 0 && waiting != 0; free &= free - 1, waiting &= waiting - 1) {
+      at[__builtin_ctz(free)] = __builtin_ctzll(waiting);
+      seated |= free & -free;
+    }
+    __builtin_memcpy(&at_, at, sizeof at_);
+    taken_ |= seated;
+    return mask_of(seated);
+  }
+  void leave(PacketInt ended) { taken_ &= ~lane_bits(ended); }
+  PacketInt taken() const { return mask_of(taken_); }
+
+  PacketFloat load(const float* of_packet) const { return gather(of_packet, at_); }
+  PacketInt load(const int* of_packet) const { return gather(of_packet, at_); }
+  void load(PacketInt which, const float* of_packet, PacketFloat& to) const { assign(which, to, load(of_packet)); }
+#if defined(__AVX512F__)
+  void store(PacketInt which, float* of_packet, PacketFloat v) const {
+    __builtin_ia32_scattersiv16sf(of_packet, static_cast<unsigned short>(lane_bits(which)), at_, v, 4);
+  }
+  void add(PacketInt which, int* of_packet, PacketInt v) const {
+    const PacketInt sum = __builtin_ia32_gathersiv16si(PacketInt{}, of_packet, at_, -1, 4) + v;
+    __builtin_ia32_scattersiv16si(of_packet, static_cast<unsigned short>(lane_bits(which)), at_, sum, 4);
+  }
+#else
+  void store(PacketInt which, float* of_packet, PacketFloat v) const {
+    for_each(which, [&](int lane, int ray) { of_packet[ray] = v[lane]; });
+  }
+  void add(PacketInt which, int* of_packet, PacketInt v) const {
+    for_each(which, [&](int lane, int ray) { of_packet[ray] += v[lane]; });
+  }
+#endif
+  // As bits of the packet.
+  std::uint64_t in_packet(PacketInt which) const {
+    std::uint64_t bits = 0;
+    for_each(which, [&](int, int ray) { bits |= std::uint64_t{1} << ray; });
+    return bits;
+  }
+
+  // Calls visit(lane, ray).
+  template <class Visit>
+  void for_each(PacketInt which, const Visit& visit) const {
+    for (unsigned left = lane_bits(which); left != 0; left &= left - 1) {
+      const int lane = __builtin_ctz(left);
+      visit(lane, at_[lane]);
+    }
+  }
+
+ private:
+  PacketInt at_{};
+  unsigned taken_ = 0;
+};
