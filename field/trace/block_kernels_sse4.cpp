@@ -14,6 +14,7 @@ namespace {
 #include "field/trace/kernels/sums.h"
 #include "field/trace/kernels/levels.h"
 #include "field/trace/kernels/far_on_ray.h"
+#include "field/trace/kernels/packet_sums.h"
 #include "field/trace/kernels/iso.h"
 #include "field/trace/kernels/strands.h"
 #include "field/trace/kernels/strand_samples.h"

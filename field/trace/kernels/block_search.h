@@ -110,7 +110,7 @@ class BlockSearch {
   PacketInt seat(Lanes& at, std::uint64_t& waiting, PacketRays& rays, LevelOf<PacketFloat>& level) const {
     const PacketInt seated = at.seat(waiting);
     load_rays(at, seated, rays);
-    at.for_each(seated, [&](int lane, int ray) { level.set(lane, level_of(ray)); });
+    at.for_each(seated, [&](int lane, int ray) { level.set(lane, level_of(ray), rays_->cell[ray]); });
     return seated;
   }
 

@@ -19,33 +19,33 @@ template <>
 struct LevelOf<PacketFloat> {
   // In all lanes, until they are set.
   explicit LevelOf(const FieldLevel& level) {
-    for (int lane = 0; lane < packet_lanes; ++lane) set(lane, level);
+    for (int lane = 0; lane < packet_lanes; ++lane) set(lane, level, 0);
   }
   LevelOf(const LevelOf&) = delete;
   LevelOf& operator=(const LevelOf&) = delete;
 
-  void set(int lane, const FieldLevel& level) {
+  // That of a cell.
+  void set(int lane, const FieldLevel& level, int cell) {
     of_[lane] = &level;
+    cell_[lane] = cell;
     f_error_[lane] = level.f_error;
     g_error_[lane] = level.g_error;
     far_bend_[lane] = level.far_bend;
     far_g_bend_[lane] = level.far_g_bend;
   }
   const FieldLevel& operator[](int lane) const { return *of_[lane]; }
-  // Of some lanes, at least one; null when they have several.
-  const FieldLevel* common(unsigned active) const {
-    const FieldLevel* first = of_[__builtin_ctz(active)];
-    for (unsigned left = active; left != 0; left &= left - 1)
-      if (of_[__builtin_ctz(left)] != first) return nullptr;
-    return first;
-  }
+  // The lanes whose level is that of this one.
+  unsigned like(int lane) const { return lane_bits(load_as_int(cell_) == cell_[lane]); }
   PacketFloat f_error() const { return load_native(f_error_); }
   PacketFloat g_error() const { return load_native(g_error_); }
   PacketFloat far_bend() const { return load_native(far_bend_); }
   PacketFloat far_g_bend() const { return load_native(far_g_bend_); }
 
  private:
+  static PacketInt load_as_int(const int* p) { return *static_cast<const PacketInt*>(__builtin_assume_aligned(p, 64)); }
+
   const FieldLevel* of_[packet_lanes];
+  alignas(64) int cell_[packet_lanes];
   alignas(64) float f_error_[packet_lanes], g_error_[packet_lanes];
   alignas(64) float far_bend_[packet_lanes], far_g_bend_[packet_lanes];
 };

@@ -9,21 +9,6 @@ inline void add_level(const LevelOf<float>& of, int degree, const OnRay<float> (
   add_far(of.level, p, sums);
 }
 
-inline void add_level(const LevelOf<PacketFloat>& levels, int degree, const OnRay<PacketFloat> (&p)[3],
-                      const PacketRays& rays, PacketInt active, RaySums<PacketFloat>& sums, PacketFloat& nearest) {
-  const unsigned lanes_of = lane_bits(active);
-  if (lanes_of == 0) return;
-  const PacketFloat at[3] = {p[0].at, p[1].at, p[2].at};
-  const PacketSummer summer{at, rays, lanes_of, nearest, sums};
-  const auto add = [&](const auto& list, int exponent) {
-    with_exponent(exponent, [&](auto known) { summer.template add<decltype(known)::exponent>(list, exponent); });
-  };
-  add([&](int lane) { return curves_of(levels[lane]); }, degree);
-  add([&](int lane) { return points_of(levels[lane]); }, degree - 1);
-  if (const FieldLevel* one = levels.common(lanes_of)) add_far(*one, p, sums);
-  else add_far_of_each(levels, lanes_of, p, sums);
-}
-
 // What gives the angle of a place.
 template <Angle Rule, class F>
 struct AngleSource {};

@@ -46,31 +46,62 @@ inline V16 sum_in_registers(const float* group, V16& nearest, const Add& add) {
   return lane_sums(whole);
 }
 
-// The sums over one list, in lanes; what they stand for is told by add_list().
+// Lane by lane, from a source to a place.
+struct Away {
+  Native x, y, z, inverse;  // and 1 / d^2
+
+  Away(Native dx, Native dy, Native dz) : x(dx), y(dy), z(dz) { inverse = 1.0F / (x * x + y * y + z * z); }
+};
+
+// add(at, away) for `count` sources or groups of them, `stride` floats apart, with away(at). The division for the next
+// one is under way while one is added: processors do not look as far ahead by themselves.
+template <class AwayOf, class Add>
+inline void for_each_source(const float* at, int count, int stride, const AwayOf& away, const Add& add) {
+  if (count == 0) return;
+  Away here = away(at);
+  for (int k = 1; k < count; ++k, at += stride) {
+    const Away next = away(at + stride);
+    add(at, here);
+    here = next;
+  }
+  add(at, here);
+}
+
+// What sources of this share and radius add to the twelve sums of RaySums along e; the last is their largest 1 / d^2.
+template <int Exponent>
+inline void add_sources(Native share, Native radius, int exponent, const Away& d, Native ex, Native ey, Native ez,
+                        Native (&a)[12]) {
+  const Native w0 = field_of<Exponent>(share, radius, d.inverse, exponent);
+  const Native w2 = w0 * d.inverse, k2 = w2 * radius, k4 = k2 * d.inverse;
+  const Native along = d.x * ex + d.y * ey + d.z * ez, ka = k4 * along;
+  a[0] += w0;
+  a[1] += w2 * along;
+  a[2] += w2;
+  a[3] += k2;
+  a[4] += k4;
+  a[5] += k2 * d.x;
+  a[6] += k2 * d.y;
+  a[7] += k2 * d.z;
+  a[8] += ka * d.x;
+  a[9] += ka * d.y;
+  a[10] += ka * d.z;
+  a[11] = larger(a[11], d.inverse);
+}
+
+// The sums over one list for one ray, sources in lanes; what they stand for is told by add_list().
 template <int Exponent>
 inline V16 sum_list(const float* first_group, int groups, int exponent, const Probe& probe, V16& nearest) {
-  return sum_in_registers<12>(first_group, nearest, [&](const float* group, Native& close, auto& a) {
-    for (int k = 0; k < groups; ++k, group += floats_per_group) {
-      const Native dx = probe.px - load_native(group), dy = probe.py - load_native(group + 16),
-                   dz = probe.pz - load_native(group + 32);
-      const Native share = load_native(group + 48), radius = load_native(group + 64);
-      const Native inv = 1.0F / (dx * dx + dy * dy + dz * dz);
-      const Native w0 = field_of<Exponent>(share, radius, inv, exponent);
-      const Native w2 = w0 * inv, k2 = w2 * radius, k4 = k2 * inv;
-      const Native along = dx * probe.ex + dy * probe.ey + dz * probe.ez, ka = k4 * along;
-      a[0] += w0;
-      a[1] += w2 * along;
-      a[2] += w2;
-      a[3] += k2;
-      a[4] += k4;
-      a[5] += k2 * dx;
-      a[6] += k2 * dy;
-      a[7] += k2 * dz;
-      a[8] += ka * dx;
-      a[9] += ka * dy;
-      a[10] += ka * dz;
-      close = larger(close, inv);
-    }
+  return sum_in_registers<12>(first_group, nearest, [&](const float* first, Native& close, auto& a) {
+    const auto away = [&](const float* group) {
+      return Away(probe.px - load_native(group), probe.py - load_native(group + 16),
+                  probe.pz - load_native(group + 32));
+    };
+    for_each_source(first, groups, floats_per_group, away, [&](const float* group, const Away& d) {
+      add_sources<Exponent>(load_native(group + 48), load_native(group + 64), exponent, d, probe.ex, probe.ey, probe.ez,
+                            a);
+    });
+    close = larger(close, a[11]);
+    a[11] = Native{};
   });
 }
 
@@ -95,32 +126,33 @@ struct FullSums {
 template <int Exponent>
 inline void add_full_sums(const float* first_group, int groups, int exponent, const float p[3], V16& nearest,
                           FullSums& out) {
-  const V16 sums = sum_in_registers<16>(first_group, nearest, [&](const float* group, Native& close, auto& a) {
-    for (int k = 0; k < groups; ++k, group += floats_per_group) {
-      const Native dx = p[0] - load_native(group), dy = p[1] - load_native(group + 16),
-                   dz = p[2] - load_native(group + 32);
-      const Native inv = 1.0F / (dx * dx + dy * dy + dz * dz), radius = load_native(group + 64);
-      const Native w0 = field_of<Exponent>(load_native(group + 48), radius, inv, exponent);
-      const Native w2 = w0 * inv, k2 = w2 * radius, k4 = k2 * inv;
-      const Native kx = k4 * dx, ky = k4 * dy, kz = k4 * dz;
+  const auto away = [&](const float* group) {
+    return Away(p[0] - load_native(group), p[1] - load_native(group + 16), p[2] - load_native(group + 32));
+  };
+  const V16 sums = sum_in_registers<16>(first_group, nearest, [&](const float* first, Native& close, auto& a) {
+    for_each_source(first, groups, floats_per_group, away, [&](const float* group, const Away& d) {
+      const Native radius = load_native(group + 64);
+      const Native w0 = field_of<Exponent>(load_native(group + 48), radius, d.inverse, exponent);
+      const Native w2 = w0 * d.inverse, k2 = w2 * radius, k4 = k2 * d.inverse;
+      const Native kx = k4 * d.x, ky = k4 * d.y, kz = k4 * d.z;
       a[0] += w0;
-      a[1] += w2 * dx;
-      a[2] += w2 * dy;
-      a[3] += w2 * dz;
+      a[1] += w2 * d.x;
+      a[2] += w2 * d.y;
+      a[3] += w2 * d.z;
       a[4] += k2;
-      a[5] += k2 * dx;
-      a[6] += k2 * dy;
-      a[7] += k2 * dz;
+      a[5] += k2 * d.x;
+      a[6] += k2 * d.y;
+      a[7] += k2 * d.z;
       a[8] += w2;
       a[9] += k4;
-      a[10] += kx * dx;
-      a[11] += ky * dy;
-      a[12] += kz * dz;
-      a[13] += kx * dy;
-      a[14] += kx * dz;
-      a[15] += ky * dz;
-      close = larger(close, inv);
-    }
+      a[10] += kx * d.x;
+      a[11] += ky * d.y;
+      a[12] += kz * d.z;
+      a[13] += kx * d.y;
+      a[14] += kx * d.z;
+      a[15] += ky * d.z;
+      close = larger(close, d.inverse);
+    });
   });
   float s[16];
   __builtin_memcpy(s, &sums, sizeof s);
@@ -222,50 +254,6 @@ struct RaySummer {
     float s[16];
     __builtin_memcpy(s, &sums, sizeof s);
     add_list(static_cast<float>(Exponent > 0 ? Exponent : exponent), s, ray.direction, out);
-  }
-};
-
-// For a packet: each ray has its own sums over the sources of its own level, in the order of a single ray.
-struct PacketSummer {
-  const PacketFloat (&at)[3];
-  const PacketRays& rays;
-  unsigned active;
-  PacketFloat& nearest;
-  RaySums<PacketFloat>& out;
-
-  // `list` is that of a lane.
-  template <int Exponent, class ListOf>
-  void add(const ListOf& list, int exponent) const {
-    V16 s[packet_lanes];
-    unsigned having = 0;
-    for (unsigned left = ~active & all_lane_bits; left != 0; left &= left - 1) s[__builtin_ctz(left)] = V16{};
-    for (unsigned left = active; left != 0; left &= left - 1) {
-      const int lane = __builtin_ctz(left);
-      const SourceList sources = list(lane);
-      const Probe probe{Native{} + at[0][lane],
-                        Native{} + at[1][lane],
-                        Native{} + at[2][lane],
-                        Native{} + rays.direction[0][lane],
-                        Native{} + rays.direction[1][lane],
-                        Native{} + rays.direction[2][lane]};
-      V16 close{};
-      const V16 sums = sum_list<Exponent>(sources.groups, sources.count, exponent, probe, close);
-      s[lane] = with_largest_last(sums, close);
-      having |= static_cast<unsigned>(sources.count > 0) << lane;
-    }
-    if (having != 0) add_columns(s, having, static_cast<float>(Exponent > 0 ? Exponent : exponent));
-  }
-
- private:
-  // A ray without a list of this exponent keeps its sums as they are.
-  void add_columns(const V16 (&rows)[packet_lanes], unsigned having, float m) const {
-    PacketFloat columns[lanes];
-    find_columns(rows, columns);
-    nearest = larger(nearest, columns[lanes - 1]);
-    if (having == active) return add_list(m, columns, rays.direction, out);
-    RaySums<PacketFloat> more = out;
-    add_list(m, columns, rays.direction, more);
-    assign(mask_of(having), out, more);
   }
 };
 

@@ -1,0 +1,223 @@
+// The field at a place of each ray of a packet. Part of block_kernels_<set>.cpp.
+//
+// Each ray has sums over the sources of its own level, in the order of a single ray: sixteen sources at a time, ray by
+// ray. Where enough rays share a level it is faster to take a source at a time, a ray in each lane; the order of
+// summation stays the same, and so do the bits.
+
+// Rays that share a level, as bits of lanes.
+struct RaysOfLevel {
+  const FieldLevel* level;
+  unsigned lanes;
+};
+
+class LevelGroups {
+ public:
+  LevelGroups(const LevelOf<PacketFloat>& levels, unsigned active) {
+    for (unsigned left = active; left != 0; left &= ~groups_[count_++].lanes) {
+      const int lane = __builtin_ctz(left);
+      groups_[count_] = {&levels[lane], levels.like(lane) & active};
+    }
+  }
+  const RaysOfLevel* begin() const { return groups_; }
+  const RaysOfLevel* end() const { return groups_ + count_; }
+
+ private:
+  RaysOfLevel groups_[packet_lanes];
+  int count_ = 0;
+};
+
+// The twelve sums of add_sources() over one list, with a ray in each lane.
+template <int Exponent>
+class SumsInRays {
+ public:
+  SumsInRays(const SourceList& list, int exponent, const PacketFloat (&at)[3], const PacketFloat (&direction)[3])
+      : first_(list.groups), groups_(list.count), exponent_(exponent), at_(at), direction_(direction) {
+    const float* const last_shares = first_ + static_cast<long>(groups_ - 1) * floats_per_group + 48;
+    while (in_last_ > 0 && last_shares[in_last_ - 1] == 0.0F) --in_last_;
+  }
+
+  void find(PacketFloat (&sums)[12]) const { sum_from(0, 1, sums); }
+
+ private:
+  // Over every stride-th lane of sources from the first one on, as lane_sums() does it.
+  void sum_from(int first, int stride, PacketFloat (&sums)[12]) const {
+    if (stride == lanes) return sum_lane(first, sums);
+    sum_from(first, 2 * stride, sums);
+    if (groups_ == 1 && first + stride >= in_last_) return;
+    PacketFloat others[12];
+    sum_from(first + stride, 2 * stride, others);
+    for (int i = 0; i < 11; ++i) sums[i] += others[i];
+    sums[11] = larger(sums[11], others[11]);
+  }
+
+  void sum_lane(int lane, PacketFloat (&sums)[12]) const {
+    PacketFloat a[12] = {};
+    const auto away = [&](const float* source) {
+      return Away(at_[0] - source[0], at_[1] - source[16], at_[2] - source[32]);
+    };
+    for_each_source(first_ + lane, groups_ - (lane >= in_last_), floats_per_group, away,
+                    [&](const float* source, const Away& d) {
+                      add_sources<Exponent>(source[48] - PacketFloat{}, source[64] - PacketFloat{}, exponent_, d,
+                                            direction_[0], direction_[1], direction_[2], a);
+                    });
+    __builtin_memcpy(sums, a, sizeof a);
+  }
+
+  const float* first_;
+  const int groups_, exponent_;
+  int in_last_ = lanes;  // sources of the last group
+  const PacketFloat (&at_)[3], (&direction_)[3];
+};
+
+struct PacketSummer {
+  const PacketFloat (&at)[3];
+  const PacketRays& rays;
+  const LevelGroups& groups;
+  unsigned active;
+  PacketFloat& nearest;
+  RaySums<PacketFloat>& out;
+
+  // `list` is that of a level.
+  template <int Exponent, class ListOf>
+  void add(const ListOf& list, int exponent) const {
+    V16 rows[packet_lanes];
+    unsigned in_rows = 0, in_lanes = 0;
+    for (const RaysOfLevel& same : groups) {
+      const SourceList sources = list(*same.level);
+      if (sources.count == 0) continue;
+      if (is_faster_in_lanes(sources, same.lanes)) {
+        in_lanes |= same.lanes;
+      } else {
+        in_rows |= same.lanes;
+        for (unsigned left = same.lanes; left != 0; left &= left - 1)
+          rows[__builtin_ctz(left)] = sums_of<Exponent>(__builtin_ctz(left), sources, exponent);
+      }
+    }
+    if ((in_rows | in_lanes) == 0) return;
+    PacketFloat columns[lanes] = {};
+    if (in_rows != 0) {
+      for (unsigned left = ~in_rows & all_lane_bits; left != 0; left &= left - 1) rows[__builtin_ctz(left)] = V16{};
+      find_columns(rows, columns);
+    }
+    if (in_lanes != 0) {
+      for (const RaysOfLevel& same : groups)
+        if (same.lanes & in_lanes) find_in_lanes<Exponent>(list(*same.level), exponent, same.lanes, columns);
+    }
+    add_columns(columns, in_rows | in_lanes, static_cast<float>(Exponent > 0 ? Exponent : exponent));
+  }
+
+ private:
+  // By the time that a group of sources, its division most of it, takes: the sums of a ray take two or three more, to
+  // be added up over lanes; those in lanes one for each source, and half of one to be added up.
+  static bool is_faster_in_lanes(const SourceList& sources, unsigned lanes_of) {
+    const int rays_of = __builtin_popcount(lanes_of) * (lanes / packet_lanes);
+    return rays_of * (2 * sources.count + 8) > 2 * lanes * sources.count + 8;
+  }
+
+  template <int Exponent>
+  V16 sums_of(int lane, const SourceList& sources, int exponent) const {
+    const auto all = [&](float v) { return v - Native{}; };
+    const Probe probe{all(at[0][lane]),
+                      all(at[1][lane]),
+                      all(at[2][lane]),
+                      all(rays.direction[0][lane]),
+                      all(rays.direction[1][lane]),
+                      all(rays.direction[2][lane])};
+    V16 close{};
+    const V16 sums = sum_list<Exponent>(sources.groups, sources.count, exponent, probe, close);
+    return with_largest_last(sums, close);
+  }
+
+  template <int Exponent>
+  void find_in_lanes(const SourceList& sources, int exponent, unsigned lanes_of, PacketFloat (&columns)[lanes]) const {
+    PacketFloat sums[12];
+    SumsInRays<Exponent>(sources, exponent, at, rays.direction).find(sums);
+    const PacketInt which = mask_of(lanes_of);
+    for (int i = 0; i < 11; ++i) assign(which, columns[i], sums[i]);
+    assign(which, columns[lanes - 1], sums[11]);
+  }
+
+  // A ray without a list of this exponent keeps its sums as they are.
+  void add_columns(const PacketFloat (&columns)[lanes], unsigned having, float m) const {
+    nearest = larger(nearest, columns[lanes - 1]);
+    if (having == active) return add_list(m, columns, rays.direction, out);
+    RaySums<PacketFloat> more = out;
+    add_list(m, columns, rays.direction, more);
+    assign(mask_of(having), out, more);
+  }
+};
+
+// The far polynomials and their derivatives along the rays: f, G, f', G'.
+class PacketFar {
+ public:
+  PacketFar(const LevelGroups& groups, const OnRay<PacketFloat> (&p)[3]) : p_(p) {
+    unsigned in_rows = 0;
+    V16 rows[packet_lanes];
+    for (const RaysOfLevel& same : groups) {
+      if (__builtin_popcount(same.lanes) >= worth_lanes) continue;
+      in_rows |= same.lanes;
+      for (unsigned left = same.lanes; left != 0; left &= left - 1)
+        rows[__builtin_ctz(left)] = of_ray(*same.level, __builtin_ctz(left));
+    }
+    if (in_rows != 0) {
+      for (unsigned left = ~in_rows & all_lane_bits; left != 0; left &= left - 1) rows[__builtin_ctz(left)] = V16{};
+      find_columns(rows, columns_);
+    }
+    for (const RaysOfLevel& same : groups)
+      if (!(same.lanes & in_rows)) find_in_lanes(*same.level, same.lanes);
+  }
+
+  void add_to(RaySums<PacketFloat>& s) const {
+    s.f += columns_[0];
+    s.df += columns_[4];
+    for (int i = 0; i < 3; ++i) {
+      s.g[i] += columns_[1 + i];
+      s.dg[i] += columns_[5 + i];
+    }
+  }
+
+ private:
+  // In lanes the four components go one by one, for a single ray together.
+  static constexpr int worth_lanes = (packet_lanes + 3) / 4 + 1;
+
+  V16 of_ray(const FieldLevel& level, int lane) const {
+    struct Row {
+      V4 value, slope, unused[2];
+    };
+    const auto of_lane = [&](int k) { return OnRay<float>{p_[k].at[lane], p_[k].slope[lane]}; };
+    const FarSlope<V4> far = far_polynomial(level, AllFour{level.far}, of_lane(0), of_lane(1), of_lane(2));
+    const Row row{far.value, far.slope, {}};
+    V16 v;
+    static_assert(sizeof row == sizeof v);
+    __builtin_memcpy(&v, &row, sizeof v);
+    return v;
+  }
+
+  void find_in_lanes(const FieldLevel& level, unsigned lanes_of) {
+    const PacketInt which = mask_of(lanes_of);
+    for (int k = 0; k < 4; ++k) {
+      const FarSlope<PacketFloat> far = far_polynomial(level, OneOfFour{level.far + k}, p_[0], p_[1], p_[2]);
+      assign(which, columns_[k], far.value);
+      assign(which, columns_[4 + k], far.slope);
+    }
+  }
+
+  const OnRay<PacketFloat> (&p_)[3];
+  PacketFloat columns_[lanes] = {};
+};
+
+// Adds the sources of the levels, and their far fields, at places on the rays; `nearest`: the largest 1 / d^2.
+inline void add_level(const LevelOf<PacketFloat>& levels, int degree, const OnRay<PacketFloat> (&p)[3],
+                      const PacketRays& rays, PacketInt active, RaySums<PacketFloat>& sums, PacketFloat& nearest) {
+  const unsigned lanes_of = lane_bits(active);
+  if (lanes_of == 0) return;
+  const LevelGroups groups(levels, lanes_of);
+  const PacketFloat at[3] = {p[0].at, p[1].at, p[2].at};
+  const PacketSummer summer{at, rays, groups, lanes_of, nearest, sums};
+  const auto add = [&](const auto& list, int exponent) {
+    with_exponent(exponent, [&](auto known) { summer.template add<decltype(known)::exponent>(list, exponent); });
+  };
+  add(curves_of, degree);
+  add(points_of, degree - 1);
+  PacketFar(groups, p).add_to(sums);
+}
