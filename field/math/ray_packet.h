@@ -21,6 +21,7 @@ struct RayPacket {
   alignas(64) double direction[3][size];  ///< unit vectors
   alignas(64) double t_min[size];
   alignas(64) double t_max[size];
+  const FieldAround* around[size];
 
   RayPacket() = default;
   explicit RayPacket(std::span<const Ray> rays) {
@@ -34,11 +35,12 @@ struct RayPacket {
     }
     t_min[lane] = ray.t_min;
     t_max[lane] = ray.t_max;
+    around[lane] = ray.around;
   }
   /// The ray of a lane, to the same bits.
   Ray ray(std::size_t lane) const {
     const auto at = [lane](const double(&axes)[3][size]) { return Vec3d{axes[0][lane], axes[1][lane], axes[2][lane]}; };
-    return {at(origin), UnitVec3::unchecked(at(direction)), t_min[lane], t_max[lane]};
+    return {at(origin), UnitVec3::unchecked(at(direction)), t_min[lane], t_max[lane], around[lane]};
   }
 };
 

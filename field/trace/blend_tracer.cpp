@@ -87,7 +87,8 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
                             .any = any,
                             .from_surface = enter <= ray.t_min,
                             .from_outside = log.side == CellLog::Side::Outside,
-                            .leaving = log.side == CellLog::Side::Inside};
+                            .leaving = log.side == CellLog::Side::Inside,
+                            .around = ray.around};
   Root root = state_->kernels.first_root(b.view(), cube.local, query);
   log.add({cube.to_world(root.searched_from), static_cast<std::uint32_t>(root.evaluations)});
   if (root.begins_outside) log.side = CellLog::Side::Outside;

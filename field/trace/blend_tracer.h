@@ -21,6 +21,7 @@
 #include "field/math/ray.h"
 #include "field/math/ray_packet.h"
 #include "field/trace/cell_settings.h"
+#include "field/trace/field_around.h"
 #include "field/trace/ray_visit.h"
 
 namespace marrow {
@@ -90,8 +91,9 @@ struct CellHits {
 };
 
 struct SurfacePoint {
-  UnitVec3 normal;  ///< outward, from the closed-form gradient of the corrected field
-  Vec3d outside;    ///< beside the surface, where the field is certainly below the iso-value
+  UnitVec3 normal;     ///< outward, from the closed-form gradient of the corrected field
+  Vec3d outside;       ///< beside the surface, where the field is certainly below the iso-value
+  FieldAround around;  ///< of the hit, for rays that leave; nothing where alpha varies
 };
 
 /// A hit in a block.

@@ -12,6 +12,7 @@
 #include <limits>
 #include <string_view>
 
+#include "field/trace/field_around.h"
 #include "field/trace/iso_curve.h"
 
 namespace marrow {
@@ -107,6 +108,7 @@ inline constexpr int packet_size = 64;  ///< rays of a packet
 /// Rays side by side in double, 64-byte aligned: the arrays of a RayPacket.
 struct PacketView {
   const double *origin[3], *direction[3], *t_min, *t_max;
+  const FieldAround* const* around;
 };
 
 /// Layers of slots of a tile: where a cell or a smaller tile is in it.
@@ -153,16 +155,6 @@ struct CellRoots {
 
 /// Gaps along a ray shorter than this times the distance to the nearest source are not decided.
 inline constexpr float shortest_gap = 2e-5F;
-
-struct PointField {
-  float f, gradient[3];            ///< of f
-  float si_gradient[3];            ///< G
-  float hessian[6];                ///< of the potential: derivative of G; xx yy zz xy xz yz
-  float nearest;                   ///< distance to the nearest source
-  float second, third;             ///< M2 and m M3 of tracing.md 3.1, for bounds of f and G nearby
-  float share, share_gradient[3];  ///< of the range of angles, where each skeleton has one; else 0
-  float share_bend;                ///< |share - its linear part| <= share_bend h^2 on short steps h
-};
 
 /// Hits on the surface of one blend, a lane each, as PointField tells of them in the coordinates of their blocks; and
 /// where rays may leave from beside them.
@@ -282,10 +274,11 @@ struct StrandSamples {
 struct BlockKernels {
   struct Query {
     float t0, t1;
-    bool any;                   ///< any root will do
-    bool from_surface;          ///< the ray begins at t0, perhaps beside the surface
-    bool from_outside = false;  ///< the ray is known to have been outside before t0
-    bool leaving = false;       ///< the ray is inside at t0, and what is asked for is where it leaves
+    bool any;                             ///< any root will do
+    bool from_surface;                    ///< the ray begins at t0, perhaps beside the surface
+    bool from_outside = false;            ///< the ray is known to have been outside before t0
+    bool leaving = false;                 ///< the ray is inside at t0, and what is asked for is where it leaves
+    const FieldAround* around = nullptr;  ///< Ray's
   };
   /// The first t in [t0, t1] where the corrected field reaches 1.
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);

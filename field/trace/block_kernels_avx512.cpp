@@ -27,6 +27,7 @@ namespace {
 #include "field/trace/kernels/search.h"
 #include "field/trace/kernels/approach.h"
 #include "field/trace/kernels/runs.h"
+#include "field/trace/kernels/departure.h"
 #include "field/trace/kernels/first_root.h"
 #include "field/trace/kernels/packet_lanes.h"
 #include "field/trace/kernels/block_search.h"

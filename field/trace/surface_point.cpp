@@ -54,10 +54,10 @@ struct Hit {
   const Vec3d& position;
 
   Vec3d place() const { return (position - block.center()) / block.half(); }
-  SurfacePoint start(const SurfaceLanes& found, std::size_t lane) const {
+  void find_start(const SurfaceLanes& found, std::size_t lane, SurfacePoint& out) const {
     const Vec3d growth{found.growth[0][lane], found.growth[1][lane], found.growth[2][lane]};
-    const UnitVec3 normal = normalize(-growth);
-    return {normal, position + normal * (block.half() * static_cast<double>(found.step[lane]))};
+    out.normal = normalize(-growth);
+    out.outside = position + out.normal * (block.half() * static_cast<double>(found.step[lane]));
   }
 };
 
@@ -87,11 +87,13 @@ void BlendTracer::surfaces_at(std::span<const SurfaceQuery> hits, std::span<Surf
     const float place[3] = {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)};
     const PointField f = state_->kernels.point_field(fine.level, rule.degree, place);
     set(side_by_side, lane, f, fine);
+    found[lane].around = {};
+    if (!state_->range) found[lane].around = {hit.block.view().owner, {place[0], place[1], place[2]}, f};
     if (state_->range) set_share(side_by_side, lane, hit.block, x, f, rule.degree);
   }
   state_->kernels.surface_starts(rule, static_cast<int>(hits.size()), side_by_side);
   for (std::size_t lane = 0; lane < hits.size(); ++lane)
-    found[lane] = Hit{*hits[lane].block, hits[lane].position}.start(side_by_side, lane);
+    Hit{*hits[lane].block, hits[lane].position}.find_start(side_by_side, lane, found[lane]);
 }
 
 }  // namespace marrow

@@ -28,7 +28,8 @@ PacketView view_of(const RayPacket& packet) {
   return {{packet.origin[0], packet.origin[1], packet.origin[2]},
           {packet.direction[0], packet.direction[1], packet.direction[2]},
           packet.t_min,
-          packet.t_max};
+          packet.t_max,
+          packet.around};
 }
 
 TileLayers layers_in(const Tile& tile, int slot) {

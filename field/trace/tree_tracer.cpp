@@ -237,14 +237,15 @@ SurfacePoint TreeTracer::surface_at(std::size_t cell, const Vec3d& position, con
   const Vec3d ways[] = {normal, normal.vec() + away, -along, away - along, normal.vec() - along, along};
   for (const double likely : {1e-6, 1e-13})  // more than sums are off; no more than rounding
     for (const Vec3d& way : ways)
-      if (const auto outside = outside_along(c, position, way, likely)) return {.normal = normal, .outside = *outside};
+      if (const auto outside = outside_along(c, position, way, likely))
+        return {.normal = normal, .outside = *outside, .around = {}};
   // At an edge of a face in whose plane the ray runs, all these ways may lie in it: aslant to all sides.
   const Frame frame = Frame::around(normal);
   for (const double x : {-1, 0, 1})
     for (const double y : {-1, 0, 1})
       if (const auto outside = outside_along(c, position, frame.to_world({x, y, 1}), 1e-13))
-        return {.normal = normal, .outside = *outside};
-  return {.normal = normal, .outside = position};
+        return {.normal = normal, .outside = *outside, .around = {}};
+  return {.normal = normal, .outside = position, .around = {}};
 }
 
 MaterialId TreeTracer::material_at(std::size_t cell, const Vec3d& position) const {

@@ -48,7 +48,7 @@ class EmbreeEngine final : public RayEngine {
     normal *= 1 / length(normal);
     if (dot(normal, ray.direction) > 0) normal = -normal;
     hit.position = ray.at(static_cast<double>(query.ray.tfar));
-    hit.normal = normal;
+    hit.normal = UnitVec3::unchecked(normal);
     hit.outside = hit.position + normal * offset;
     return true;
   }

@@ -88,7 +88,7 @@ double shade(const RayEngine& engine, const Vec3d& toward_light, BlockRays& bloc
     const double facing = dot(hit->normal, toward_light);
     if (!(facing > 0)) continue;
     block.facing.push_back(facing);
-    block.shadow_rays.push_back({hit->outside, UnitVec3::unchecked(toward_light)});
+    block.shadow_rays.push_back(hit->leaving(UnitVec3::unchecked(toward_light)));
   }
   block.hidden.resize(block.shadow_rays.size());
   counts.shadow_rays += block.shadow_rays.size();
@@ -158,7 +158,7 @@ void go_on(const RayEngine& engine, std::vector<PathEnd>& ends, int bounce, RayC
   std::vector<Ray> rays;
   for (const auto& [path, hit] : ends) {
     const auto seed = static_cast<std::uint64_t>(path) * 16 + static_cast<std::uint64_t>(bounce);
-    rays.push_back({hit.outside, diffuse_direction(hit.normal, seed)});
+    rays.push_back(hit.leaving(diffuse_direction(hit.normal, seed)));
   }
   std::vector<std::optional<EngineHit>> hits(rays.size());
   engine.first_hits(rays, hits, counts);

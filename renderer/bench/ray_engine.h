@@ -27,10 +27,8 @@ struct RayCounts {
   RayCounts& operator+=(const RayCounts&);
 };
 
-struct EngineHit {
-  Vec3d position, normal;  ///< outward, unit length
-  Vec3d outside;           ///< where rays that leave the surface begin
-};
+/// Of which place, normal and what leaving() needs are known.
+using EngineHit = SurfaceHit;
 
 /// Safe to use from many threads.
 class RayEngine {
@@ -41,10 +39,8 @@ class RayEngine {
   /// Many rays through one region: a hit for each, or nothing.
   virtual void first_hits(std::span<const Ray> rays, std::span<std::optional<EngineHit>> hits,
                           RayCounts& counts) const {
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      EngineHit hit;
-      hits[i] = first_hit(rays[i], hit, counts) ? std::optional(hit) : std::nullopt;
-    }
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (!first_hit(rays[i], hits[i].emplace(), counts)) hits[i].reset();
   }
   /// As Surfaces::occluded().
   virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> hidden) const {

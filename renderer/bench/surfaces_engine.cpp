@@ -4,23 +4,18 @@
 namespace marrow {
 namespace {
 
-EngineHit engine_hit(const SurfaceHit& hit) { return {hit.position, hit.normal.vec(), hit.outside}; }
-
 class SurfacesEngine final : public RayEngine {
  public:
   explicit SurfacesEngine(const Surfaces& surfaces) : surfaces_(surfaces) {}
 
   bool first_hit(const Ray& ray, EngineHit& hit, RayCounts&) const override {
     const auto found = surfaces_.first_hit(ray);
-    if (found) hit = engine_hit(*found);
+    if (found) hit = *found;
     return found.has_value();
   }
   bool occluded(const Ray& ray) const override { return surfaces_.occluded(ray); }
   void first_hits(std::span<const Ray> rays, std::span<std::optional<EngineHit>> hits, RayCounts&) const override {
-    std::vector<std::optional<SurfaceHit>> found(rays.size());
-    surfaces_.first_hits(rays, found);
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      hits[i] = found[i] ? std::optional(engine_hit(*found[i])) : std::nullopt;
+    surfaces_.first_hits(rays, hits);
   }
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> hidden) const override {
     surfaces_.occluded(rays, hidden);
@@ -40,7 +35,7 @@ class RecordingEngine final : public RayEngine {
     const auto found = surfaces_.first_hit(ray, record);
     counts.evaluations += record.evaluations;
     counts.uncertified += record.certified ? 0 : 1;
-    if (found) hit = engine_hit(*found);
+    if (found) hit = *found;
     return found.has_value();
   }
   bool occluded(const Ray& ray) const override { return surfaces_.occluded(ray); }

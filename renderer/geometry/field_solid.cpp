@@ -67,7 +67,7 @@ FieldSolid::LocalRay FieldSolid::to_local(const Ray& ray) const {
   const Vec3d direction = local_from_world_.vector(ray.direction);
   const double stretch = length(direction);
   return {{local_from_world_.point(ray.origin), UnitVec3::unchecked(direction / stretch), ray.t_min * stretch,
-           ray.t_max * (stretch * (1 + 0x1p-50))},
+           ray.t_max * (stretch * (1 + 0x1p-50)), ray.around},
           stretch};
 }
 
@@ -165,7 +165,8 @@ void FieldSolid::describe(std::span<const HitToDescribe> hits) const {
   tracer_->surfaces_at(std::span(asked).first(hits.size()), std::span(found).first(hits.size()));
   for (std::size_t i = 0; i < hits.size(); ++i) {
     SurfaceHit& hit = *hits[i].hit;
-    const auto& [normal, outside] = found[i];
+    const auto& [normal, outside, around] = found[i];
+    hit.around = around;
     hit.normal = in_world_ ? normal : normalize(local_from_world_.transposed(normal));
     hit.outside = in_world_ ? outside : world_from_local_.point(outside);
     const MaterialId own = strongest_material(tracer_->field(), asked[i].position);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -10,6 +11,7 @@
 #include "field/math/box3.h"
 #include "field/math/ray.h"
 #include "field/math/vec3.h"
+#include "field/trace/field_around.h"
 
 namespace marrow {
 
@@ -20,6 +22,12 @@ struct SurfaceHit {
   Vec3d outside;    ///< a point beside `position`, certified to lie outside: reflected rays start here, at t = 0
   ObjectId object;
   MaterialId material;
+  FieldAround around;  ///< for rays from `outside`
+
+  /// The hit must outlive the ray.
+  Ray leaving(const UnitVec3& direction, double t_max = std::numeric_limits<double>::infinity()) const {
+    return {outside, direction, 0, t_max, &around};
+  }
 };
 
 /// What it took to answer a ray. A function of the ray alone, whatever the order of traversal.

@@ -33,7 +33,7 @@ TEST(EmbreeEngine, MeetsConesAndSpheres) {
   EXPECT_NEAR(hit.position.z, 0.5, 1e-5);
   ASSERT_TRUE(engine->first_hit({{2, 0.6, 20}, down}, hit, counts));
   EXPECT_NEAR(hit.position.z, 0.8, 1e-5);
-  EXPECT_NEAR(hit.normal.y, 0.6, 1e-4);
+  EXPECT_NEAR(hit.normal.y(), 0.6, 1e-4);
   EXPECT_FALSE(engine->first_hit({{0.5, 0, 20}, down}, hit, counts));
   EXPECT_TRUE(engine->occluded({{-1.5, 0, 20}, down}));
   EXPECT_FALSE(engine->occluded({{0.5, 0, 20}, down}));
@@ -76,7 +76,7 @@ TEST(EmbreeEngine, MeetsTriangles) {
   RayCounts counts;
   ASSERT_TRUE(engine->first_hit({{0.2, 0.2, 5}, UnitVec3::unchecked({0, 0, -1})}, hit, counts));
   EXPECT_NEAR(hit.position.z, 0, 1e-6);
-  EXPECT_NEAR(hit.normal.z, 1, 1e-6);
+  EXPECT_NEAR(hit.normal.z(), 1, 1e-6);
 }
 
 }  // namespace

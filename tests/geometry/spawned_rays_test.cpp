@@ -69,10 +69,13 @@ TEST(SpawnedRays, DoNotMeetAConvexBodyAgain) {
         if (dot(direction, hit->normal) < 0) direction = -direction;
         // Every second one close to the tangent plane.
         if (k % 2) direction = direction - hit->normal * (dot(direction, hit->normal) * random.between(0.9, 0.9999));
-        const Ray spawned{hit->outside, normalize(direction)};
-        ++rays;
-        met += scene.surfaces().first_hit(spawned).has_value();
-        met += scene.surfaces().occluded(spawned);
+        // With what is known of the field there, and without.
+        const Ray leaving = hit->leaving(normalize(direction));
+        for (const Ray& spawned : {leaving, Ray{leaving.origin, leaving.direction}}) {
+          ++rays;
+          met += scene.surfaces().first_hit(spawned).has_value();
+          met += scene.surfaces().occluded(spawned);
+        }
       }
     }
   }

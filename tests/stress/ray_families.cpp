@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <deque>
 
 #include "field/math/elementary.h"
 #include "tests/stress/drawing.h"
@@ -117,7 +119,15 @@ Ray silhouette(Random& random, const StressScene& s) {
   return toward(from, random.between(0, 1) < 0.5 ? hit : miss);
 }
 
-// Away from a hit, every second one close to the tangent plane.
+// Rays refer to the hits that they leave: those of the last rays are kept.
+const SurfaceHit& kept(const SurfaceHit& hit) {
+  constexpr std::size_t most = 4096;  // more than go together
+  thread_local std::deque<SurfaceHit> hits;
+  if (hits.size() == most) hits.pop_front();
+  return hits.emplace_back(hit);
+}
+
+// Away from a hit, every second one close to the tangent plane, with what is known of the field there or without.
 Ray spawned(Random& random, const StressScene& s) {
   const auto hit = s.surfaces().first_hit(random.between(0, 1) < 0.5 ? chord(random, s) : focus(random, s));
   if (!hit) return chord(random, s);
@@ -125,7 +135,8 @@ Ray spawned(Random& random, const StressScene& s) {
   if (dot(direction, hit->normal) < 0) direction = -direction;
   if (random.between(0, 1) < 0.5)
     direction = direction - hit->normal * (dot(direction, hit->normal) * random.between(0.9, 0.9999));
-  return {hit->outside, normalize(direction)};
+  if (random.between(0, 1) < 0.5) return {hit->outside, normalize(direction)};
+  return kept(*hit).leaving(normalize(direction));
 }
 
 // Along the surface, or from a place beside it in any direction: from 1e-9 of the distance to the skeleton on to either

@@ -80,6 +80,11 @@ TEST(InstructionSets, GiveTheSameBits) {
         const SurfacePoint a = first.surface_at(expected.hit->cell, p);
         const SurfacePoint b = tracers[k].tracer().surface_at(expected.hit->cell, p);
         ASSERT_TRUE(same(a.normal.vec(), b.normal.vec()) && same(a.outside, b.outside)) << variants[k].name;
+        const UnitVec3 away = normalize(a.normal.vec() + 0.99 * random_direction(random));
+        const auto left = tracers.front().trace({a.outside, away, 0, 1e30, &a.around}),
+                   also = tracers[k].trace({b.outside, away, 0, 1e30, &b.around});
+        ASSERT_EQ(left.hit.has_value(), also.hit.has_value()) << variants[k].name;
+        ASSERT_TRUE(!left.hit || same(left.hit->t, also.hit->t)) << variants[k].name;
       }
     }
   }

@@ -39,8 +39,11 @@ Rays strangers(Random& random, const BlendField& blend) {
   return rays;
 }
 
-// From beside the surface, as shadow rays begin; from anywhere, even inside, where nothing was met.
-Rays leaving(Random& random, const BlendTracer& tracer, const Rays& arriving) {
+using Starts = std::array<SurfacePoint, RayPacket::size>;
+
+// From beside the surface, as shadow rays begin, most of them with what is known there; from anywhere, even inside,
+// where nothing was met.
+Rays leaving(Random& random, const BlendTracer& tracer, const Rays& arriving, Starts& starts) {
   const UnitVec3 light = UnitVec3::unchecked(random_direction(random));
   Rays rays;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -49,7 +52,9 @@ Rays leaving(Random& random, const BlendTracer& tracer, const Rays& arriving) {
       CellLog log;
       const auto hit = tracer.first_hit(tile, arriving[i], false, log);
       if (!hit) continue;
-      rays[i] = {tracer.surface_at(*hit->block, arriving[i].at(hit->t)).outside, light};
+      starts[i] = tracer.surface_at(*hit->block, arriving[i].at(hit->t));
+      rays[i] = {starts[i].outside, light};
+      if (random.whole(0, 3) != 0) rays[i].around = &starts[i].around;
       if (random.whole(0, 3) == 0) rays[i].t_max = random.between(0.1, 2);
       break;
     }
@@ -168,6 +173,7 @@ class Packets : public testing::TestWithParam<Setting> {};
 TEST_P(Packets, FindWhatSingleRaysFind) {
   Random random(4711);
   const BlendField blend = random_scene(random, GetParam(), 7);
+  Starts starts;
   for (const std::string& set : sets_here()) {
     auto made = BlendTracer::make(blend, {.instruction_set = set});
     ASSERT_TRUE(made);
@@ -181,7 +187,7 @@ TEST_P(Packets, FindWhatSingleRaysFind) {
       const Rays near = neighbours(random, blend);
       expect_same(tracer, near, all, any, count);
       expect_same(tracer, near, asked, false, count);
-      expect_same(tracer, leaving(random, tracer, near), all, any, count);
+      expect_same(tracer, leaving(random, tracer, near, starts), all, any, count);
       expect_same(tracer, strangers(random, blend), asked, any, count);
       if (HasFatalFailure()) return;
     }
@@ -218,6 +224,7 @@ TEST(PacketsWithoutKeptLevels, FindWhatSingleRaysFind) {
 TEST(PacketsOfVariedAngles, FindWhatSingleRaysFind) {
   Random random(4712);
   Compared count;
+  Starts starts;
   for (const BlendField& blend : {random_angled_scene(random, {4, 0}, 5), random_stranded_scene(random, {4, 0}, 5),
                                   random_stranded_scene(random, {5, 0}, 5)})
     for (const std::string& set : sets_here()) {
@@ -230,7 +237,7 @@ TEST(PacketsOfVariedAngles, FindWhatSingleRaysFind) {
         const Rays near = neighbours(random, blend);
         expect_same(tracer, near, all, any, count);
         expect_same(tracer, near, some_lanes(random), false, count);
-        expect_same(tracer, leaving(random, tracer, near), all, any, count);
+        expect_same(tracer, leaving(random, tracer, near, starts), all, any, count);
         expect_same(tracer, strangers(random, blend), all, any, count);
         if (HasFatalFailure()) return;
       }

@@ -31,7 +31,7 @@ class MockSurfaces final : public Surfaces {
     const auto offer = [&](double t, const UnitVec3& normal, MaterialId material, std::size_t object) {
       if (!(t >= ray.t_min && t <= ray.t_max) || (nearest && nearest->t <= t)) return;
       const Vec3d p = ray.at(t);
-      nearest = SurfaceHit{t, p, normal, p + normal * 1e-9, ObjectId(object), material};
+      nearest = SurfaceHit{t, p, normal, p + normal * 1e-9, ObjectId(object), material, {}};
       record.evaluations = 1;
     };
     for (std::size_t i = 0; i < spheres_.size(); ++i)

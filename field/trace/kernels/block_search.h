@@ -114,6 +114,25 @@ class BlockSearch {
     return seated;
   }
 
+  void load_around(const Lanes& at, PacketInt which, AroundOf<PacketFloat>& to) const {
+    V16 rows[packet_lanes] = {};
+    alignas(64) float place[3][packet_lanes] = {};
+    unsigned known = 0;
+    at.for_each(which, [&](int lane, int ray) {
+      const FieldAround* const around = rays_->around[ray];
+      if (around == nullptr || around->block != cells_[rays_->cell[ray]].block->owner) return;
+      known |= 1U << lane;
+      __builtin_memcpy(&rows[lane], &around->field, sizeof rows[lane]);
+      for (int k = 0; k < 3; ++k) place[k][lane] = around->place[k];
+    });
+    to.known = mask_of(known);
+    if (known == 0) return;
+    PacketFloat columns[around_numbers];
+    find_columns(rows, columns);
+    set_numbers(columns, to);
+    for (int k = 0; k < 3; ++k) to.place[k] = load_native(place[k]);
+  }
+
   // Returns the rays that end here.
   std::uint64_t leave_surfaces(std::uint64_t leaving) {
     BlockRays& r = *rays_;
@@ -126,8 +145,10 @@ class BlockSearch {
       const QueryOf<PacketFloat> query{at.load(r.from), at.load(r.to), any_root_, false, here, PacketInt{}};
       RootOf<PacketFloat> root;
       PacketFloat front = query.t0;
+      AroundOf<PacketFloat> around;
+      if constexpr (Rule == Angle::One) load_around(at, here, around);
       const PacketInt go_on = leave_surface<Rule>(block_, BlocksOf<PacketFloat>{cells_, at.load(r.cell)}, level, rays,
-                                                  query, here, root, front);
+                                                  around, query, here, root, front);
       at.store(here, r.from, front);
       at.store(here & root.hit, r.t, root.t);
       r.hit |= at.in_packet(root.hit);

@@ -108,8 +108,8 @@ inline bool is_inside(const BlockView& block, const LocalRay& ray, float t, cons
 // that are to go on from `front`; those that end here have a hit, or nothing.
 template <Angle Rule, class F>
 inline MaskOf<F> leave_surface(const BlockView& block, const BlocksOf<F>& blocks, const LevelOf<F>& fine,
-                               const RayOf<F>& ray, const QueryOf<F>& query, MaskOf<F> rays, RootOf<F>& root,
-                               F& front) {
+                               const RayOf<F>& ray, const AroundOf<F>& around, const QueryOf<F>& query, MaskOf<F> rays,
+                               RootOf<F>& root, F& front) {
   using Mask = MaskOf<F>;
   Patches<F> patches;
   F end = query.t1;
@@ -122,6 +122,12 @@ inline MaskOf<F> leave_surface(const BlockView& block, const BlocksOf<F>& blocks
   }
   const AngleOf<Rule, F> angle = angle_from<Rule>(patches, ray, query.t0);
   Marcher<Rule, F> march(block, fine, ray, angle.source);
+  Mask departed{};
+  if constexpr (Rule == Angle::One) departed = depart(march, ray, around, query.t0, end, rays, front);
+  root.begins_outside = root.begins_outside | departed;
+  const Mask away = departed & !(front >= query.t1);
+  rays = rays & !departed;
+  if (!any(rays)) return away;
   Search<Rule, F> start(march, query.t0, end);
   const SampleOf<Rule, F> first = march.sample(query.t0, rays);
   const Mask inside = rays & (first.nominal < -clearly_inside), outside = rays & !inside;
@@ -131,17 +137,19 @@ inline MaskOf<F> leave_surface(const BlockView& block, const BlocksOf<F>& blocks
   root.begins_outside = root.begins_outside | outside;
   start.record(outside, first);
   assign(outside, front, start.front);
-  return outside & !(start.front >= query.t1);
+  return away | (outside & !(start.front >= query.t1));
 }
 
 template <Angle Rule>
-inline RootOf<float> first_root_of(const BlockView& block, const LocalRay& ray, const QueryOf<float>& query) {
+inline RootOf<float> first_root_of(const BlockView& block, const LocalRay& ray, const FieldAround* known_around,
+                                   const QueryOf<float>& query) {
   RootOf<float> root;
   root.begins_outside = query.from_outside;
   float front = query.t0;
   if (!query.leaving && query.from_surface) {
     const LevelOf<float> fine(block.fine());
-    if (!leave_surface<Rule>(block, BlocksOf<float>{&block}, fine, ray, query, true, root, front)) return root;
+    const AroundOf<float> around = around_in(block, known_around);
+    if (!leave_surface<Rule>(block, BlocksOf<float>{&block}, fine, ray, around, query, true, root, front)) return root;
   }
   const BlocksOf<float> itself{&block};
   Runs<Rule, float> runs(itself, SlotBits<float>(itself), ray, front, query.t1);
@@ -165,7 +173,7 @@ inline RootOf<float> first_root_of(const BlockView& block, const LocalRay& ray, 
 template <Angle Rule>
 inline Root single_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& q) {
   const QueryOf<float> query{q.t0, q.t1, q.any, q.leaving, q.from_surface, q.from_outside};
-  const RootOf<float> root = first_root_of<Rule>(block, ray, query);
+  const RootOf<float> root = first_root_of<Rule>(block, ray, q.around, query);
   return {
       root.t, root.hit, root.undecided, root.evaluations, root.searched_from, root.begins_outside, root.enters_inside};
 }

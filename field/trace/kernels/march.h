@@ -42,19 +42,25 @@ struct Marcher {
   // At t, of the rays that are active.
   Sample sample(F t, Mask active) {
     count(active, evaluations);
-    Sample p;
-    p.t = t;
-    p.s = RaySums<F>{};
+    RaySums<F> sums{};
     OnRay<F> at[3];
     for (int k = 0; k < 3; ++k) at[k] = {ray.origin[k] + ray.direction[k] * t, ray.direction[k]};
     F nearest{};
-    add_level(level, block.degree, at, ray, active, p.s, nearest);
+    add_level(level, block.degree, at, ray, active, sums, nearest);
     // At most eight half sides of the block: its scale, where it lists no sources at all.
-    p.distance = 0.99999F / root_of(max_of(nearest, 1.0F / 64));
+    return told_by(t, at, sums, 0.99999F / root_of(max_of(nearest, 1.0F / 64)), level.g_error(), 1);
+  }
+
+  // What sums tell of the place. `g_error`: how much longer G may be; places are rounded so many times as for a sample.
+  Sample told_by(F t, const OnRay<F> (&at)[3], const RaySums<F>& sums, F distance, F g_error, float roundings) {
+    Sample p;
+    p.t = t;
+    p.s = sums;
+    p.distance = distance;
     const F yy = p.s.g[0] * p.s.g[0] + p.s.g[1] * p.s.g[1] + p.s.g[2] * p.s.g[2], y = root_of(yy);
     const F dy = (p.s.g[0] * p.s.dg[0] + p.s.g[1] * p.s.dg[1] + p.s.g[2] * p.s.dg[2]) / max_of(y, 1e-12F);
-    p.raise = 1 + rounding + position_rounding * static_cast<float>(block.degree + 1) / p.distance;
-    p.y = y + level.g_error();
+    p.raise = 1 + rounding + roundings * position_rounding * static_cast<float>(block.degree + 1) / p.distance;
+    p.y = y + g_error;
     if constexpr (Rule == Angle::Mean) angle().judge(p, at, y, dy);
     else if constexpr (Rule == Angle::Patched) angle().judge(p, y, dy);
     else judge(p, y, dy);
@@ -169,11 +175,12 @@ struct Marcher {
   struct Bend {
     F field, gradient;
   };
-  Bend bend_until(const Sample& p, F h, F q) const {
+  Bend bend_until(const Sample& p, F h, F q) const { return bend_by(p.s, h, q); }
+  Bend bend_by(const RaySums<F>& sums, F h, F q) const {
     const Series series = series_of(1 / (1 - q));
     const F hh = h * h;
-    return {(p.s.second * series.field + level.far_bend()) * hh,
-            (p.s.third * series.gradient + level.far_g_bend()) * hh};
+    return {(sums.second * series.field + level.far_bend()) * hh,
+            (sums.third * series.gradient + level.far_g_bend()) * hh};
   }
 
   // Whether the field is below 1 on all of [t, t + h] (h of either sign): B3 and B4 of tracing.md. Both bounds are

@@ -191,6 +191,10 @@ inline void enter_blocks(const Frames& frames, const PacketView& rays, std::uint
     from_outside |= static_cast<std::uint64_t>(bits_of_mask(enter >= load(at.outside_from + first))) << first;
   });
   out.from_surface = from_surface & asked;
+  for (std::uint64_t left = out.from_surface; left != 0; left &= left - 1) {
+    const int ray = __builtin_ctzll(left);
+    out.around[ray] = rays.around[ray];
+  }
   out.begins_outside = from_outside & asked;
 }
 

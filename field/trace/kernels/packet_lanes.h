@@ -10,6 +10,7 @@ struct BlockRays {
   alignas(64) float t[packet_size], undecided[packet_size];
   alignas(64) int evaluations[packet_size];
   alignas(64) int cell[packet_size];
+  const FieldAround* around[packet_size];                        // of those that begin at a surface
   alignas(64) float share[SharePatch::degree + 1][packet_size];  // ShareOnRun of the run, where patches give the angle
   std::uint64_t from_surface;                                    // as in QueryOf
   std::uint64_t begins_outside, enters_inside, hit;              // as in RootOf

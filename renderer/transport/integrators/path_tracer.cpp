@@ -20,6 +20,7 @@ constexpr int surfaces_before_roulette = 3;
 struct Vertex {
   Vertex(const SurfaceHit& hit, const UnitVec3& arriving, const RenderScene& scene)
       : receiver{hit.outside, hit.normal},
+        around(hit.around),
         frame(Frame::around(hit.normal)),
         wo(UnitVec3::unchecked(frame.to_local(-arriving.vec()))),
         material(scene.materials[hit.material.index()]),
@@ -28,7 +29,13 @@ struct Vertex {
 
   UnitVec3 to_local(const UnitVec3& w) const { return UnitVec3::unchecked(frame.to_local(w)); }
 
+  // The vertex must outlive the ray.
+  Ray leaving(const UnitVec3& direction, double t_max = infinity) const {
+    return {receiver.position, direction, 0, t_max, &around};
+  }
+
   Receiver receiver;
+  FieldAround around;
   Frame frame;
   UnitVec3 wo;
   const Material& material;
@@ -83,9 +90,8 @@ std::optional<AskedLight> asked_light(const RenderScene& scene, const Vertex& at
   if (is_black(scattered.f_cos)) return {};
   const double pdf = pick.probability * light->pdf;
   const bool rivals = !light->delta && strategy == Strategy::Both;
-  return AskedLight{
-      {.origin = at.receiver.position, .direction = light->wi, .t_min = 0, .t_max = light->distance * reach},
-      scattered.f_cos * light->radiance * ((rivals ? power_heuristic(pdf, scattered.pdf) : 1) / pdf)};
+  return AskedLight{at.leaving(light->wi, light->distance * reach),
+                    scattered.f_cos * light->radiance * ((rivals ? power_heuristic(pdf, scattered.pdf) : 1) / pdf)};
 }
 
 // Ends the path with a probability that its throughput gives, and pays those that go on. Returns whether it goes on.
@@ -154,7 +160,7 @@ std::optional<Ray> Path::go_on() {
     return {};
   }
   next_pdf_ = drawn->pdf;
-  next_ = Ray{.origin = at_->receiver.position, .direction = UnitVec3::unchecked(at_->frame.to_world(drawn->wi))};
+  next_ = at_->leaving(UnitVec3::unchecked(at_->frame.to_world(drawn->wi)));
   // A last ray matters only for light that it meets itself
   if (depth_ == max_depth_ && !scene_.has_emission &&
       is_black(met_light(scene_, next_, infinity, {&at_->receiver, next_pdf_}, strategy_))) {
