@@ -8,6 +8,7 @@
 #include "field/trace/level_cache.h"
 #include "field/trace/level_recipe.h"
 #include "field/trace/serial.h"
+#include "field/trace/slot_layers.h"
 #include "field/trace/stranded_level.h"
 
 namespace marrow {
@@ -125,17 +126,37 @@ ShareAt Block::share(const Vec3d& place) const {
   return share_at(patch(layer), place);
 }
 
+namespace {
+
+// From the first to the last layer along an axis in which there is any of an octant's slots; there must be some.
+LayerSpan layers_with(std::uint64_t slots, int axis) {
+  constexpr std::uint64_t first_layer[3] = {0x1111'1111'1111'1111, 0x000f'000f'000f'000f, 0x0000'0000'0000'ffff};
+  const auto any = [&](int layer) { return (slots & first_layer[axis] << (layer << (2 * axis))) != 0; };
+  LayerSpan span{0, 4};
+  while (!any(span.first)) ++span.first;
+  while (!any(span.end - 1)) --span.end;
+  return span;
+}
+
+}  // namespace
+
 Box3 Block::surface_box() const {
   Box3 box;  // in the block
   for (int octant = 0; octant < 8; ++octant) {
     if (!(octants_ >> octant & 1)) continue;
     const bool known = surface_known_.load(std::memory_order_acquire) >> octant & 1;
-    const Vec3d center = octant_center({0, 0, 0}, 1, octant), h{0.125, 0.125, 0.125};
-    std::uint64_t left = known ? surface_[static_cast<std::size_t>(octant)].load(std::memory_order_relaxed) : ~0ULL;
-    for (; left != 0; left &= left - 1) {
-      const Vec3d slot = slot_center(center, 0.5, std::countr_zero(left));
-      box.include({slot - h, slot + h});
+    const std::uint64_t slots =
+        known ? surface_[static_cast<std::size_t>(octant)].load(std::memory_order_relaxed) : ~0ULL;
+    if (slots == 0) continue;
+    const Vec3d center = octant_center({0, 0, 0}, 1, octant);
+    Box3 around;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      const LayerSpan layers = layers_with(slots, axis);
+      around.lower[k] = center[k] - 0.5 + 0.25 * layers.first;
+      around.upper[k] = center[k] - 0.5 + 0.25 * layers.end;
     }
+    box.include(around);
   }
   if (box.empty()) return {};
   constexpr double rounding = 1e-6;  // some of float's, for places and slots in the block
