@@ -21,7 +21,7 @@ class NearestParts {
  public:
   void add(const PartEntry& entry) {
     if (entry <= before_) return;
-    std::size_t at = full() ? most - 1 : count_;
+    std::uint32_t at = full() ? most - 1 : count_;
     if (full() && entries_[at] < entry) return;
     for (; at > 0 && entry < entries_[at - 1]; --at) entries_[at] = entries_[at - 1];
     entries_[at] = entry;
@@ -45,10 +45,10 @@ class NearestParts {
 
  private:
   // A hit is found in the second part that a ray comes into, on average
-  static constexpr std::size_t most = 4;
+  static constexpr std::uint32_t most = 4;
   std::array<PartEntry, most> entries_;
-  std::size_t count_ = 0, at_ = 0;
   PartEntry before_;
+  std::uint32_t count_ = 0, at_ = 0;
 };
 
 }  // namespace marrow

@@ -20,33 +20,18 @@ struct PartHit {
   bool found = false, begins_inside = false;  ///< begins_inside: as in ElementLog; then the hit is not one
 };
 
+/// The ray must stay where it is.
 class PartVisit {
  public:
   PartVisit() = default;
-  explicit PartVisit(const Ray& r) : ray(r), inverse_{1 / r.direction.x(), 1 / r.direction.y(), 1 / r.direction.z()} {}
+  explicit PartVisit(const Ray& r) : ray(&r) {}
 
-  Ray ray;
-  double t_start = 0;  ///< where the search of boxes begins on the ray
+  const Ray* ray = nullptr;
   PartHit best;
   std::vector<RayVisit>* visits = nullptr;  ///< of all parts, if there is one
 
-  /// Where the ray is in a box, before its end and before the best hit. A ray exactly in the plane of a padded face
-  /// gives NaN and may count either way; what the box is padded for is not there.
-  struct Stretch {
-    double enter, exit;
-    bool empty() const { return !(enter <= exit); }
-  };
-  Stretch in(const Box3& box) const {
-    Stretch s{ray.t_min, last()};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double a = (box.lower[i] - ray.origin[i]) * inverse_[i], b = (box.upper[i] - ray.origin[i]) * inverse_[i];
-      s.enter = std::max(s.enter, std::min(a, b));
-      s.exit = std::min(s.exit, std::max(a, b));
-    }
-    return s;
-  }
   /// What lies behind it does not matter any more.
-  double last() const { return std::min(ray.t_max, best.t); }
+  double last() const { return std::min(ray->t_max, best.t); }
 
   /// What a part of the solid is told of the ray.
   ElementLog before(const Solid& solid) const {
@@ -80,7 +65,6 @@ class PartVisit {
   }
 
  private:
-  Vec3d inverse_;  // of the direction
   const Solid* outside_of_ = nullptr;
   double outside_from_ = std::numeric_limits<double>::infinity();  // ElementLog's, of that solid
 };

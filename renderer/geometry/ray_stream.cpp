@@ -113,7 +113,7 @@ class Stream {
     for (const std::uint32_t i : together) {
       StreamedRay& ray = memory_.rays[i];
       in_lanes.rays[in_lanes.count] = &ray;
-      in_lanes.packet.set(in_lanes.count, ray.visit.ray);
+      in_lanes.packet.set(in_lanes.count, *ray.visit.ray);
       in_lanes.log.lanes[in_lanes.count++] = ray.visit.before(*of.solid);
     }
   }

@@ -7,12 +7,10 @@
 namespace marrow {
 
 struct StreamedRay {
-  StreamedRay() = default;
   explicit StreamedRay(const Ray& ray) : visit(ray) {}
 
   PartVisit visit;
   NearestParts ahead;
-  double late = 0;        ///< floats may come into a box, or out of it, by so much off from doubles
   bool finished = false;  ///< nothing more is to be asked, whatever lies ahead; of a ray for any hit: it has one
 
   /// Takes in what a part answered; `t` as in PartVisit.
