@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace marrow {
@@ -16,11 +18,11 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double reach = 1 - 1e-5;
 constexpr int surfaces_before_roulette = 3;
 
-// A surface met from outside, and how it scatters toward where the path came from.
+// A surface met from outside, and how it scatters toward where the path came from. Rays that leave refer to the hit.
 struct Vertex {
-  Vertex(const SurfaceHit& hit, const UnitVec3& arriving, const RenderScene& scene)
-      : receiver{hit.outside, hit.normal},
-        around(hit.around),
+  Vertex(const SurfaceHit& met, const UnitVec3& arriving, const RenderScene& scene)
+      : hit(met),
+        receiver{hit.outside, hit.normal},
         frame(Frame::around(hit.normal)),
         wo(UnitVec3::unchecked(frame.to_local(-arriving.vec()))),
         material(scene.materials[hit.material.index()]),
@@ -29,13 +31,8 @@ struct Vertex {
 
   UnitVec3 to_local(const UnitVec3& w) const { return UnitVec3::unchecked(frame.to_local(w)); }
 
-  // The vertex must outlive the ray.
-  Ray leaving(const UnitVec3& direction, double t_max = infinity) const {
-    return {receiver.position, direction, 0, t_max, &around};
-  }
-
+  const SurfaceHit& hit;
   Receiver receiver;
-  FieldAround around;
   Frame frame;
   UnitVec3 wo;
   const Material& material;
@@ -90,7 +87,7 @@ std::optional<AskedLight> asked_light(const RenderScene& scene, const Vertex& at
   if (is_black(scattered.f_cos)) return {};
   const double pdf = pick.probability * light->pdf;
   const bool rivals = !light->delta && strategy == Strategy::Both;
-  return AskedLight{at.leaving(light->wi, light->distance * reach),
+  return AskedLight{at.hit.leaving(light->wi, light->distance * reach),
                     scattered.f_cos * light->radiance * ((rivals ? power_heuristic(pdf, scattered.pdf) : 1) / pdf)};
 }
 
@@ -103,124 +100,137 @@ bool survives(Rgb& throughput, Sampler& sampler) {
   return true;
 }
 
-// A path from the camera on, surface by surface. What it asks on its way, whoever walks it answers.
+class Path;
+
+// What a path asks where it arrives.
+struct Questions {
+  struct Light {
+    Path* path;
+    Rgb radiance;  // that comes back along the path unless something is on the shadow ray
+  };
+  std::vector<Ray> shadow_rays;
+  std::vector<Light> lights;  // one a shadow ray
+  std::vector<Ray> rays;      // where paths go on,
+  std::vector<Path*> paths;   // one a ray
+
+  void clear() {
+    shadow_rays.clear();
+    lights.clear();
+    rays.clear();
+    paths.clear();
+  }
+};
+
+// What all paths of one call have in common.
+struct Rules {
+  const RenderScene& scene;
+  const int max_depth;
+  const Strategy strategy;
+};
+
+// A path from the camera on, surface by surface. It keeps little: there are many of them.
 class Path {
  public:
-  Path(const RenderScene& scene, int max_depth, Strategy strategy, const Ray& camera_ray,
-       const std::optional<SurfaceHit>& first, Sampler& sampler)
-      : scene_(scene), max_depth_(max_depth), strategy_(strategy), sampler_(sampler) {
-    arrive(camera_ray, first, {});
-  }
-  bool ended() const { return !at_.has_value(); }
+  explicit Path(Sampler& sampler) : sampler_(&sampler) {}
+
+  /// At the end of a ray. It has ended when it asks for no ray.
+  void arrive(const Rules&, const Ray&, const std::optional<SurfaceHit>&, Questions&);
+  /// Of what it asked for.
+  void receive(const Rgb& light) { radiance_ += light; }
   Rgb radiance() const { return radiance_; }
 
-  /// Preconditions of these, which take turns: not ended.
-  std::optional<AskedLight> ask() { return asked_light(scene_, *at_, sampler_, strategy_); }
-  void receive(const Rgb& light) { radiance_ += throughput_ * light; }
-  /// Where to; nothing when it ends here.
-  std::optional<Ray> go_on();
-  /// At the end of that ray.
-  void arrive(const std::optional<SurfaceHit>& hit) {
-    const Receiver start = at_->receiver;
-    arrive(next_, hit, {&start, next_pdf_});
-  }
-
  private:
-  std::optional<BsdfSample> drawn_direction();
-  void arrive(const Ray&, const std::optional<SurfaceHit>&, const Departure&);
-  void end() { at_.reset(); }
+  void ask_for_light(const Rules&, const Vertex&, Questions&);
+  void go_on(const Rules&, const Vertex&, Questions&);
+  std::optional<BsdfSample> drawn_direction(const Rules&, const Vertex&);
 
-  const RenderScene& scene_;
-  const int max_depth_;
-  const Strategy strategy_;
-  Sampler& sampler_;
+  Sampler* sampler_;
   int depth_ = 0;  // surfaces so far
   Rgb radiance_;
   Rgb throughput_{1};
-  std::optional<Vertex> at_;  // nothing when the path has ended
-  Ray next_;                  // where it goes on, drawn with this density
-  double next_pdf_ = 0;
+  Receiver start_{};  // of the ray under way, drawn with this density
+  double pdf_ = 0;
 };
 
 // Light that the ray has met comes first; the surface that it has met may be its last.
-void Path::arrive(const Ray& ray, const std::optional<SurfaceHit>& hit, const Departure& from) {
-  radiance_ += throughput_ * met_light(scene_, ray, hit ? hit->t : infinity, from, strategy_);
-  end();
+void Path::arrive(const Rules& rules, const Ray& ray, const std::optional<SurfaceHit>& hit, Questions& questions) {
+  const Departure from = depth_ == 0 ? Departure{} : Departure{&start_, pdf_};
+  radiance_ += throughput_ * met_light(rules.scene, ray, hit ? hit->t : infinity, from, rules.strategy);
   if (!hit) return;
-  at_.emplace(*hit, ray.direction, scene_);
-  radiance_ += throughput_ * at_->emitted;
-  if (++depth_ > max_depth_) end();
+  const Vertex at(*hit, ray.direction, rules.scene);
+  radiance_ += throughput_ * at.emitted;
+  if (++depth_ > rules.max_depth) return;
+  ask_for_light(rules, at, questions);
+  go_on(rules, at, questions);
+}
+
+void Path::ask_for_light(const Rules& rules, const Vertex& at, Questions& questions) {
+  const auto asked = asked_light(rules.scene, at, *sampler_, rules.strategy);
+  if (!asked) return;
+  questions.shadow_rays.push_back(asked->shadow_ray);
+  questions.lights.push_back({this, throughput_ * asked->radiance});
 }
 
 // In a direction that the surface draws.
-std::optional<Ray> Path::go_on() {
-  const auto drawn = drawn_direction();
-  if (!drawn) {
-    end();
-    return {};
-  }
-  next_pdf_ = drawn->pdf;
-  next_ = at_->leaving(UnitVec3::unchecked(at_->frame.to_world(drawn->wi)));
+void Path::go_on(const Rules& rules, const Vertex& at, Questions& questions) {
+  const auto drawn = drawn_direction(rules, at);
+  if (!drawn) return;
+  start_ = at.receiver;
+  pdf_ = drawn->pdf;
+  const Ray ray = at.hit.leaving(UnitVec3::unchecked(at.frame.to_world(drawn->wi)));
   // A last ray matters only for light that it meets itself
-  if (depth_ == max_depth_ && !scene_.has_emission &&
-      is_black(met_light(scene_, next_, infinity, {&at_->receiver, next_pdf_}, strategy_))) {
-    end();
-    return {};
-  }
-  return next_;
+  if (depth_ == rules.max_depth && !rules.scene.has_emission &&
+      is_black(met_light(rules.scene, ray, infinity, {&start_, pdf_}, rules.strategy)))
+    return;
+  questions.rays.push_back(ray);
+  questions.paths.push_back(this);
 }
 
 // Nothing when the path ends here.
-std::optional<BsdfSample> Path::drawn_direction() {
-  if (depth_ == max_depth_ && !scene_.lights.can_be_met() && !scene_.has_emission) return {};
-  const auto drawn = at_->bsdf.sample(at_->wo, sampler_.next_3d());
+std::optional<BsdfSample> Path::drawn_direction(const Rules& rules, const Vertex& at) {
+  if (depth_ == rules.max_depth && !rules.scene.lights.can_be_met() && !rules.scene.has_emission) return {};
+  const auto drawn = at.bsdf.sample(at.wo, sampler_->next_3d());
   if (!drawn) return {};
   throughput_ *= drawn->weight;
-  if (depth_ > surfaces_before_roulette && !survives(throughput_, sampler_)) return {};
+  if (depth_ > surfaces_before_roulette && !survives(throughput_, *sampler_)) return {};
   return drawn;
 }
 
-// Neighbours go to the same light, and leave from the same surfaces: whatever paths ask, they ask together.
-void ask_for_light(std::span<Path* const> paths, const Surfaces& surfaces) {
-  struct Waiting {
-    Path* path;
-    Rgb light;
-  };
-  std::vector<Waiting> waiting;
-  std::vector<Ray> shadow_rays;
-  for (Path* path : paths) {
-    const auto asked = path->ask();
-    if (asked) shadow_rays.push_back(asked->shadow_ray);
-    if (asked) waiting.push_back({path, asked->radiance});
-    else path->receive({});
-  }
-  std::vector<std::uint8_t> hidden(shadow_rays.size());
-  surfaces.occluded(shadow_rays, hidden);
-  for (std::size_t i = 0; i < waiting.size(); ++i) waiting[i].path->receive(hidden[i] != 0 ? Rgb{} : waiting[i].light);
+// What a thread keeps from call to call.
+struct Memory {
+  std::vector<Path> paths;
+  Questions asked, answered;
+  std::vector<std::uint8_t> hidden;
+  std::vector<std::optional<SurfaceHit>> left, met;  // that rays under way refer to, and what they meet
+};
+Memory& memory() {
+  thread_local const auto own = std::make_unique<Memory>();
+  return *own;
 }
 
-void go_on(std::span<Path* const> paths, const Surfaces& surfaces) {
-  std::vector<Path*> under_way;
-  std::vector<Ray> rays;
-  for (Path* path : paths)
-    if (const auto ray = path->go_on()) {
-      under_way.push_back(path);
-      rays.push_back(*ray);
-    }
-  std::vector<std::optional<SurfaceHit>> hits(rays.size());
-  surfaces.first_hits(rays, hits);
-  for (std::size_t i = 0; i < rays.size(); ++i) under_way[i]->arrive(hits[i]);
+void answer_lights(const Questions& asked, const Surfaces& surfaces, std::vector<std::uint8_t>& hidden) {
+  hidden.resize(asked.shadow_rays.size());
+  surfaces.occluded(asked.shadow_rays, hidden);
+  for (std::size_t i = 0; i < hidden.size(); ++i)
+    if (hidden[i] == 0) asked.lights[i].path->receive(asked.lights[i].radiance);
 }
 
-// To the ends of all paths.
-void walk(std::span<Path> paths, const Surfaces& surfaces) {
-  std::vector<Path*> open;
-  for (Path& path : paths) open.push_back(&path);
+// To the ends of all paths. Neighbours go to the same light, and leave from the same surfaces: whatever paths ask, they
+// ask together.
+void walk(const Rules& rules, const CameraSamples& of, Memory& m) {
+  const Surfaces& surfaces = *rules.scene.surfaces;
+  m.asked.clear();
+  for (std::size_t i = 0; i < of.rays.size(); ++i) m.paths[i].arrive(rules, of.rays[i], of.first[i], m.asked);
   for (;;) {
-    std::erase_if(open, [](const Path* path) { return path->ended(); });
-    if (open.empty()) return;
-    ask_for_light(open, surfaces);
-    go_on(open, surfaces);
+    answer_lights(m.asked, surfaces, m.hidden);
+    if (m.asked.rays.empty()) return;
+    m.met.resize(m.asked.rays.size());
+    surfaces.first_hits(m.asked.rays, m.met);
+    std::swap(m.asked, m.answered);
+    std::swap(m.met, m.left);
+    m.asked.clear();
+    for (std::size_t i = 0; i < m.left.size(); ++i)
+      m.answered.paths[i]->arrive(rules, m.answered.rays[i], m.left[i], m.asked);
   }
 }
 
@@ -234,12 +244,11 @@ Rgb PathTracer::radiance(const Ray& camera_ray, const std::optional<SurfaceHit>&
 }
 
 void PathTracer::radiances(const CameraSamples& of, const RenderScene& scene, std::span<Rgb> radiances) const {
-  std::vector<Path> paths;
-  paths.reserve(of.rays.size());
-  for (std::size_t i = 0; i < of.rays.size(); ++i)
-    paths.emplace_back(scene, max_depth_, strategy_, of.rays[i], of.first[i], of.samplers[i]);
-  walk(paths, *scene.surfaces);
-  for (std::size_t i = 0; i < paths.size(); ++i) radiances[i] = paths[i].radiance();
+  Memory& m = memory();
+  m.paths.clear();
+  for (Sampler& sampler : of.samplers) m.paths.emplace_back(sampler);
+  walk({scene, max_depth_, strategy_}, of, m);
+  for (std::size_t i = 0; i < radiances.size(); ++i) radiances[i] = m.paths[i].radiance();
 }
 
 }  // namespace marrow
