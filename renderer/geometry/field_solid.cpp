@@ -3,10 +3,25 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <memory>
 #include <utility>
+#include <vector>
 
 namespace marrow {
 namespace {
+
+// Rays of a packet in the blend's coordinates. Kept by each thread: it is large, and few lanes may be in use.
+struct InBlend {
+  std::vector<PartRays> places;
+  RayPacket packet;
+  CellHits cells;
+  std::array<double, RayPacket::size> stretch;      // as in LocalRay
+  std::array<std::size_t, RayPacket::size> visits;  // before
+};
+InBlend& in_blend() {
+  thread_local const auto own = std::make_unique<InBlend>();
+  return *own;
+}
 
 std::size_t visits_so_far(const ElementLog& log) { return log.visits == nullptr ? 0 : log.visits->size(); }
 
@@ -71,11 +86,15 @@ FieldSolid::LocalRay FieldSolid::to_local(const Ray& ray) const {
           stretch};
 }
 
-void FieldSolid::to_world(const CellLog& log, double stretch, std::size_t visits_before, ElementLog& out) {
-  out.enter = log.enter / stretch;
-  out.undecided = log.undecided / stretch;
-  out.outside_from = log.outside_from / stretch;
+void FieldSolid::to_world(const CellLog& log, double stretch, std::size_t visits_before, ElementLog& out) const {
+  out.enter = log.enter;
+  out.undecided = log.undecided;
+  out.outside_from = log.outside_from;
   out.begins_inside = log.side == CellLog::Side::Inside;
+  if (in_world_) return;
+  out.enter /= stretch;
+  out.undecided /= stretch;
+  out.outside_from /= stretch;
   if (out.visits == nullptr) return;
   for (std::size_t i = visits_before; i < out.visits->size(); ++i) (*out.visits)[i].begin /= stretch;
 }
@@ -109,38 +128,30 @@ std::optional<double> FieldSolid::hit_in_part(const SolidPart& part, const Ray& 
 
 void FieldSolid::hits_in_parts(std::span<const LanesInPart> parts, const RayPacket& packet, bool any,
                                PacketLog& log) const {
-  std::array<PartRays, RayPacket::size> places;
-  LaneSet lanes = 0;
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    const SolidPart& part = *parts[k].part;
-    places[k] = {{part.element, static_cast<const Tile*>(part.within), part.slot}, parts[k].lanes};
-    lanes |= parts[k].lanes;
-  }
-  std::array<double, RayPacket::size> stretch;
-  RayPacket moved;
-  if (in_world_) stretch.fill(1);
-  else
+  InBlend& b = in_blend();
+  b.places.clear();
+  for (const auto& [part, lanes] : parts) {
+    b.places.push_back({{part->element, static_cast<const Tile*>(part->within), part->slot}, lanes});
     for_each_lane(lanes, [&](std::size_t i) {
-      const LocalRay local = to_local(packet.ray(i));
-      moved.set(i, local.ray);
-      stretch[i] = local.stretch;
+      b.stretch[i] = 1;
+      if (!in_world_) {
+        const LocalRay local = to_local(packet.ray(i));
+        b.packet.set(i, local.ray);
+        b.stretch[i] = local.stretch;
+      }
+      b.cells.log[i] = {.outside_from = log.lanes[i].outside_from * b.stretch[i], .visits = log.lanes[i].visits};
+      b.visits[i] = visits_so_far(log.lanes[i]);
     });
-  CellHits cells;
-  std::array<std::size_t, RayPacket::size> before;
-  for_each_lane(lanes, [&](std::size_t i) {
-    cells.log[i] = {};
-    cells.log[i].outside_from = log.lanes[i].outside_from * stretch[i];
-    cells.log[i].visits = log.lanes[i].visits;
-    before[i] = visits_so_far(log.lanes[i]);
-  });
-  tracer_->first_hits(std::span(places).first(parts.size()), in_world_ ? packet : moved, any, cells);
-  for (const auto& [part, in_part] : parts)
-    for_each_lane(in_part, [&](std::size_t i) {
-      to_world(cells.log[i], stretch[i], before[i], log.lanes[i]);
+  }
+  tracer_->first_hits(b.places, in_world_ ? packet : b.packet, any, b.cells);
+  for (const auto& [part, lanes] : parts)
+    for_each_lane(lanes, [&](std::size_t i) {
+      to_world(b.cells.log[i], b.stretch[i], b.visits[i], log.lanes[i]);
       if (part->within == nullptr && !any) log.lanes[i].begins_inside = false;  // as of an element in hit()
-      log.lanes[i].place = cells.hit[i].block;
-      const double t = std::max(packet.t_min[i], cells.hit[i].t / stretch[i]);
-      const bool met = cells.hit[i].block != nullptr && (any || t <= packet.t_max[i]);
+      const CellHit& hit = b.cells.hit[i];
+      log.lanes[i].place = hit.block;
+      const double t = std::max(packet.t_min[i], in_world_ ? hit.t : hit.t / b.stretch[i]);
+      const bool met = hit.block != nullptr && (any || t <= packet.t_max[i]);
       log.t[i] = met ? t : std::numeric_limits<double>::infinity();
     });
 }

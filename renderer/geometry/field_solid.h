@@ -41,7 +41,7 @@ class FieldSolid final : public Solid {
     double stretch;
   };
   LocalRay to_local(const Ray&) const;
-  static void to_world(const CellLog&, double stretch, std::size_t visits_before, ElementLog&);
+  void to_world(const CellLog&, double stretch, std::size_t visits_before, ElementLog&) const;
   template <class Place>
   std::optional<double> traced(const Place&, const Ray&, bool any, ElementLog&) const;
   Box3 to_world(const Box3&) const;
