@@ -28,6 +28,13 @@ double area_of(const Box3& box) {
   return s.x * s.y + s.y * s.z + s.z * s.x;
 }
 
+// Kept from call to call, and holding anything.
+std::span<PartHierarchy::Hit> hits_of_thread(std::size_t count) {
+  thread_local std::vector<PartHierarchy::Hit> hits;
+  if (hits.size() < count) hits.resize(count);
+  return std::span(hits).first(count);
+}
+
 Ray until(const Ray& ray, double t) {
   Ray shorter = ray;
   shorter.t_max = std::min(ray.t_max, t);
@@ -193,19 +200,20 @@ void EmbreeSurfaces::describe(const PlaneHit& of, const Ray& ray, SurfaceHit& hi
 }
 
 // Of a ray that begins inside only whole elements tell, and of one that is inside several solids these one by one.
-PartHierarchy::Hit EmbreeSurfaces::asked_again(PartHierarchy::Hit found, const Ray& ray,
-                                               std::vector<RayVisit>* visits) const {
+void EmbreeSurfaces::ask_again(PartHierarchy::Hit& found, const Ray& ray, std::vector<RayVisit>* visits) const {
   if (found.begins_inside) {
     if (visits != nullptr) visits->clear();
     found = whole_->first_hit(ray, visits);
   }
-  if (!united_.is_covered(found, ray)) return found;
+  if (!united_.is_covered(found, ray)) return;
   if (visits != nullptr) visits->clear();
-  return united_.first_hit(ray, visits);
+  found = united_.first_hit(ray, visits);
 }
 
 PartHierarchy::Hit EmbreeSurfaces::nearest_on(const Ray& ray, std::vector<RayVisit>* visits) const {
-  return asked_again(finest().first_hit(ray, visits), ray, visits);
+  PartHierarchy::Hit found = finest().first_hit(ray, visits);
+  ask_again(found, ray, visits);
+  return found;
 }
 
 std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray) const {
@@ -243,9 +251,9 @@ EmbreeSurfaces::BeforePlanes::BeforePlanes(const EmbreeSurfaces& surfaces, std::
 
 void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::optional<SurfaceHit>> hits) const {
   const BeforePlanes before(*this, rays);
-  std::vector<PartHierarchy::Hit> found(rays.size());
+  const auto found = hits_of_thread(rays.size());
   stream_first_hits(finest(), before.rays, found, {});
-  for (std::size_t i = 0; i < rays.size(); ++i) found[i] = asked_again(found[i], before.rays[i], nullptr);
+  for (std::size_t i = 0; i < rays.size(); ++i) ask_again(found[i], before.rays[i], nullptr);
   describe(found, before.planes(), rays, hits);
 }
 
@@ -255,17 +263,17 @@ void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::option
   visits.resize(std::max(visits.size(), rays.size()));
   for (std::size_t i = 0; i < rays.size(); ++i) visits[i].clear();
   const BeforePlanes before(*this, rays);
-  std::vector<PartHierarchy::Hit> found(rays.size());
+  const auto found = hits_of_thread(rays.size());
   stream_first_hits(finest(), before.rays, found, std::span(visits).first(rays.size()));
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    found[i] = asked_again(found[i], before.rays[i], &visits[i]);
+    ask_again(found[i], before.rays[i], &visits[i]);
     records[i] = record_of(visits[i], found[i].undecided, std::min({found[i].t, before.plane(i).t, rays[i].t_max}));
   }
   describe(found, before.planes(), rays, hits);
 }
 
 void EmbreeSurfaces::occluded(std::span<const Ray> rays, std::span<std::uint8_t> hidden) const {
-  std::vector<PartHierarchy::Hit> any(rays.size());
+  const auto any = hits_of_thread(rays.size());
   stream_any_hits(finest(), rays, any);
   for (std::size_t i = 0; i < rays.size(); ++i)
     hidden[i] = hides(any[i], rays[i]) || nearest_plane(rays[i]).plane != nullptr ? 1 : 0;

@@ -73,7 +73,7 @@ class EmbreeSurfaces final : public Surfaces {
     std::vector<PlaneHit> planes_;  // none where there are no planes
     std::vector<Ray> shorter_;
   };
-  PartHierarchy::Hit asked_again(PartHierarchy::Hit, const Ray&, std::vector<RayVisit>*) const;
+  void ask_again(PartHierarchy::Hit& found, const Ray&, std::vector<RayVisit>* visits) const;
   bool hides(const PartHierarchy::Hit& any, const Ray&) const;
   PartHierarchy::Hit nearest_on(const Ray&, std::vector<RayVisit>*) const;
   const PartHierarchy& finest() const { return *finest_.load(std::memory_order_acquire); }
