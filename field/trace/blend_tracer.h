@@ -93,7 +93,7 @@ struct CellHits {
 struct SurfacePoint {
   UnitVec3 normal;     ///< outward, from the closed-form gradient of the corrected field
   Vec3d outside;       ///< beside the surface, where the field is certainly below the iso-value
-  FieldAround around;  ///< of the hit, for rays that leave; nothing where alpha varies
+  FieldAround around;  ///< of the hit, for rays that leave; nothing where each skeleton has an angle
 };
 
 /// A hit in a block.

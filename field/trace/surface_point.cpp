@@ -88,7 +88,8 @@ void BlendTracer::surfaces_at(std::span<const SurfaceQuery> hits, std::span<Surf
     const PointField f = state_->kernels.point_field(fine.level, rule.degree, place);
     set(side_by_side, lane, f, fine);
     found[lane].around = {};
-    if (!state_->range) found[lane].around = {hit.block.view().owner, {place[0], place[1], place[2]}, f};
+    if (!state_->range || hit.block.patches() != nullptr)
+      found[lane].around = {hit.block.view().owner, {place[0], place[1], place[2]}, f};
     if (state_->range) set_share(side_by_side, lane, hit.block, x, f, rule.degree);
   }
   state_->kernels.surface_starts(rule, static_cast<int>(hits.size()), side_by_side);

@@ -40,25 +40,37 @@ void expect_like(const AllCells& cells, const Oracle& oracle, const Ray& known, 
 
 class Departure : public testing::TestWithParam<Setting> {};
 
-TEST_P(Departure, MeetsWhatIsMetAnew) {
-  Random random(171);
-  Counts count;
-  for (int scene = 0; scene < 3; ++scene) {
-    const AllCells cells(random_scene(random, GetParam(), random.whole(2, 9)));
-    const BlendField& blend = cells.tracer().field();
-    const Oracle oracle(blend);
-    for (int i = 0; i < 1000; ++i) {
-      const Ray ray = any_ray(random, blend);
-      const auto hit = cells.first_hit(ray);
-      if (!hit) continue;
-      const SurfacePoint at = cells.tracer().surface_at(hit->cell, ray.at(hit->t));
-      ASSERT_NE(at.around.block, nullptr);
-      expect_like(cells, oracle, {at.outside, outward(random, at.normal), 0, infinity, &at.around}, count);
-    }
+void expect_like(Random& random, const BlendField& blend, Counts& count) {
+  const AllCells cells(blend);
+  const Oracle oracle(blend);
+  for (int i = 0; i < 1000; ++i) {
+    const Ray ray = any_ray(random, blend);
+    const auto hit = cells.first_hit(ray);
+    if (!hit) continue;
+    const SurfacePoint at = cells.tracer().surface_at(hit->cell, ray.at(hit->t));
+    ASSERT_NE(at.around.block, nullptr);
+    expect_like(cells, oracle, {at.outside, outward(random, at.normal), 0, infinity, &at.around}, count);
   }
+}
+
+void expect_few_apart(const Counts& count) {
   std::cout << "  " << count.rays << " rays, " << count.hits << " hits, " << count.apart << " apart\n";
   EXPECT_GT(count.rays, 500);
   EXPECT_LT(count.apart, count.rays / 100);
+}
+
+TEST_P(Departure, MeetsWhatIsMetAnew) {
+  Random random(171);
+  Counts count;
+  for (int i = 0; i < 3; ++i) expect_like(random, random_scene(random, GetParam(), random.whole(2, 9)), count);
+  expect_few_apart(count);
+}
+
+TEST(Departure, MeetsWhatIsMetAnewWhereDirectionsGiveTheAngle) {
+  Random random(173);
+  Counts count;
+  for (const int n : {3, 4, 5}) expect_like(random, random_stranded_scene(random, {n, 1}, 7), count);
+  expect_few_apart(count);
 }
 
 INSTANTIATE_TEST_SUITE_P(Trace, Departure,

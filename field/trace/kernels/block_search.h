@@ -146,7 +146,7 @@ class BlockSearch {
       RootOf<PacketFloat> root;
       PacketFloat front = query.t0;
       AroundOf<PacketFloat> around;
-      if constexpr (Rule == Angle::One) load_around(at, here, around);
+      load_around(at, here, around);
       const PacketInt go_on = leave_surface<Rule>(block_, BlocksOf<PacketFloat>{cells_, at.load(r.cell)}, level, rays,
                                                   around, query, here, root, front);
       at.store(here, r.from, front);

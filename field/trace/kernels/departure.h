@@ -44,9 +44,10 @@ inline void bend_of(const F (&h)[6], const F (&v)[3], F (&out)[3]) {
 
 // How far rays that begin at t0 beside a hit are proved to be outside by B3 and B4 of tracing.md about the hit. The ray
 // is s from it at t0, and at t0 + h no more than s + h: with h >= 16 s remainders in (s + h)^2 are at most (17/16)^2 of
-// those in h^2, and s + h is at most 17/16 h. Returns the rays of which that much is proved; `front` is how far.
-template <class F>
-inline MaskOf<F> depart(Marcher<Angle::One, F>& march, const RayOf<F>& ray, const AroundOf<F>& around, F t0, F end,
+// those in h^2, and s + h is at most 17/16 h. Where patches give the angle they do so on the ray itself. Returns the
+// rays of which that much is proved; `front` is how far.
+template <Angle Rule, class F>
+inline MaskOf<F> depart(Marcher<Rule, F>& march, const RayOf<F>& ray, const AroundOf<F>& around, F t0, F end,
                         MaskOf<F> rays, F& front) {
   using Mask = MaskOf<F>;
   constexpr float least_steps = 16, remainder_growth = 1.13F, way_growth = 1.0625F;
@@ -84,7 +85,7 @@ inline MaskOf<F> depart(Marcher<Angle::One, F>& march, const RayOf<F>& ray, cons
   const auto p = march.told_by(t0, at, sums, around.nearest / way_growth, march.level.g_error() + beside.gradient, 2);
   const Mask outside = close & p.sure;
   if (!any(outside)) return outside;
-  Search<Angle::One, F> start(march, t0, end);
+  Search<Rule, F> start(march, t0, end);
   start.record(outside, p);
   const Mask away = outside & (start.front - t0 >= least_steps * s);
   assign(away, front, start.front);

@@ -123,7 +123,7 @@ inline MaskOf<F> leave_surface(const BlockView& block, const BlocksOf<F>& blocks
   const AngleOf<Rule, F> angle = angle_from<Rule>(patches, ray, query.t0);
   Marcher<Rule, F> march(block, fine, ray, angle.source);
   Mask departed{};
-  if constexpr (Rule == Angle::One) departed = depart(march, ray, around, query.t0, end, rays, front);
+  if constexpr (Rule != Angle::Mean) departed = depart(march, ray, around, query.t0, end, rays, front);
   root.begins_outside = root.begins_outside | departed;
   const Mask away = departed & !(front >= query.t1);
   rays = rays & !departed;
