@@ -19,6 +19,7 @@ namespace marrow {
 
 inline constexpr int lanes = 16;
 inline constexpr int floats_per_group = 5 * lanes;  ///< x[16] y[16] z[16] share[16] radius[16]
+inline constexpr float unused_place = 1e3F;  ///< x, y and z of lanes without a source, which have share and radius 0
 
 inline constexpr int most_axes = 45;
 inline constexpr int tensor_floats = 48;  ///< 45 components of a tensor of degree 8; sums of f, f^2, f^2 with direction

@@ -8,8 +8,8 @@
 
 namespace marrow {
 
-/// Lanes without a source have share 0 and stand far away. `share` is that of FieldLevel, or for far_moments() the
-/// field at the origin.
+/// Lanes without a source have share 0 and stand far away, at unused_place. `share` is that of FieldLevel, or for
+/// far_moments() the field at the origin.
 struct alignas(64) SourceGroup {
   float x[lanes], y[lanes], z[lanes], share[lanes], radius[lanes];
 };
@@ -39,7 +39,7 @@ class SourceGroups {
   void start_group() {
     SourceGroup& g = groups_.emplace_back();
     for (int i = 0; i < lanes; ++i) {
-      g.x[i] = g.y[i] = g.z[i] = 1e3F;
+      g.x[i] = g.y[i] = g.z[i] = unused_place;
       g.share[i] = g.radius[i] = 0;
     }
   }

@@ -35,15 +35,17 @@ struct LevelOf<PacketFloat> {
   }
   const FieldLevel& operator[](int lane) const { return *of_[lane]; }
   // The lanes whose level is that of this one.
-  unsigned like(int lane) const { return lane_bits(load_as_int(cell_) == cell_[lane]); }
+  unsigned like(int lane) const {
+    PacketInt cells;
+    __builtin_memcpy(&cells, cell_, sizeof cells);
+    return lane_bits(cells == cell_[lane]);
+  }
   PacketFloat f_error() const { return load_native(f_error_); }
   PacketFloat g_error() const { return load_native(g_error_); }
   PacketFloat far_bend() const { return load_native(far_bend_); }
   PacketFloat far_g_bend() const { return load_native(far_g_bend_); }
 
  private:
-  static PacketInt load_as_int(const int* p) { return *static_cast<const PacketInt*>(__builtin_assume_aligned(p, 64)); }
-
   const FieldLevel* of_[packet_lanes];
   alignas(64) int cell_[packet_lanes];
   alignas(64) float f_error_[packet_lanes], g_error_[packet_lanes];

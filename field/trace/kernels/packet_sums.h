@@ -32,13 +32,16 @@ class SumsInRays {
  public:
   SumsInRays(const SourceList& list, int exponent, const PacketFloat (&at)[3], const PacketFloat (&direction)[3])
       : first_(list.groups), groups_(list.count), exponent_(exponent), at_(at), direction_(direction) {
-    const float* const last_shares = first_ + static_cast<long>(groups_ - 1) * floats_per_group + 48;
-    while (in_last_ > 0 && last_shares[in_last_ - 1] == 0.0F) --in_last_;
+    const float* const last = first_ + static_cast<long>(groups_ - 1) * floats_per_group;
+    while (in_last_ > 0 && is_unused(last + in_last_ - 1)) --in_last_;
   }
 
   void find(PacketFloat (&sums)[12]) const { sum_from(0, 1, sums); }
 
  private:
+  // As SourceGroups leaves lanes: without a field, and too far away to be the nearest.
+  static bool is_unused(const float* source) { return source[48] == 0.0F && source[0] == unused_place; }
+
   // Over every stride-th lane of sources from the first one on, as lane_sums() does it.
   void sum_from(int first, int stride, PacketFloat (&sums)[12]) const {
     if (stride == lanes) return sum_lane(first, sums);
@@ -107,8 +110,8 @@ struct PacketSummer {
   }
 
  private:
-  // By the time that a group of sources, its division most of it, takes: the sums of a ray take two or three more, to
-  // be added up over lanes; those in lanes one for each source, and half of one to be added up.
+  // Counted in groups of sources: the sums of a ray take some four more, to be added up over lanes, those in lanes one
+  // for each source, and four.
   static bool is_faster_in_lanes(const SourceList& sources, unsigned lanes_of) {
     const int rays_of = __builtin_popcount(lanes_of) * (lanes / packet_lanes);
     return rays_of * (2 * sources.count + 8) > 2 * lanes * sources.count + 8;

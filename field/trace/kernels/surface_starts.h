@@ -51,7 +51,7 @@ class SurfaceStart {
     const auto [x_weight, y_weight] = weights(f_, y, share_weight);
     const F along[3] = {g_[0] * inverse, g_[1] * inverse, g_[2] * inverse};
     F bent[3];
-    bend(along, bent);
+    bend_of(h_, along, bent);
     for (int k = 0; k < 3; ++k) {
       growth[k] = gradient_[k] * x_weight + bent[k] * y_weight;
       if constexpr (Varied) growth[k] += from(hits_.share_gradient[k]) * share_weight;
@@ -65,7 +65,7 @@ class SurfaceStart {
     constexpr float enough = Varied ? 1.5e-4F : 2e-5F;
     // Near a single skeleton a step of s distances lowers C by s (n - 1): shorter ones are not enough.
     constexpr float shortest = Varied ? 3.2e-5F : 8e-6F;
-    bend(normal, bent_);
+    bend_of(h_, normal, bent_);
     slope_ = dot3(gradient_, normal);
     if constexpr (Varied) share_slope_ = share_along(normal);
     F best{}, largest = all_lanes<F>(-infinity);
@@ -85,13 +85,6 @@ class SurfaceStart {
   void load3(const float (&of)[3][lanes], F (&to)[3]) const {
     for (int k = 0; k < 3; ++k) to[k] = from(of[k]);
   }
-  // H v
-  void bend(const F (&v)[3], F (&out)[3]) const {
-    out[0] = h_[0] * v[0] + h_[3] * v[1] + h_[4] * v[2];
-    out[1] = h_[3] * v[0] + h_[1] * v[1] + h_[5] * v[2];
-    out[2] = h_[4] * v[0] + h_[5] * v[1] + h_[2] * v[2];
-  }
-
   struct Weights {
     F x, y;
   };
