@@ -203,22 +203,25 @@ auto TreeTracer::with_field_near(const Cell& cell, const Vec3d& p, const Use& us
   return is_near ? use(cell.part->leaf_at(p).tree(), FieldTree::whole) : use(tree_, cell.member);
 }
 
-// The shortest of growing steps after which the field is certainly below 1. Where no bounds tell within a thousandth of
-// the cell, the shortest after which it is below 1 by more than `likely` as summed.
+// The shortest of growing steps after which the field is certainly below 1, as far as sums over points are off from it
+// (field/tree/README.md). Where no bounds tell that within a thousandth of the cell, the shortest after which what is
+// summed is certainly below 1, or is so by more than `likely`.
 std::optional<Vec3d> TreeTracer::outside_along(const Cell& c, const Vec3d& position, const Vec3d& direction,
                                                double likely) const {
-  constexpr double longest = 1e-3, rounding_of_sums = 1e-12;
+  constexpr double longest = 1e-3, rounding_of_sums = 1e-12, error_of_sums = 2e-7;
+  const double off = c.part != nullptr ? error_of_sums : rounding_of_sums;
   std::optional<Vec3d> summed;
   const double shortest = 4 * rounding::ulp * std::max(largest_coordinate(c.box), c.box.size().x);
-  for (double step = shortest; step < std::max(longest * c.box.size().x, 16 * shortest); step *= 2) {
+  for (double step = shortest; step < std::max(longest * c.box.size().x, 64 * shortest); step *= 4) {
     const Vec3d p = position + direction * step;
     const auto field_at = [&]<Number X>(const Vec3<X>& there) {
       const auto own = [&](const FieldTree& tree, std::uint32_t record) { return value(tree, there, record); };
       return max(with_field_near(c, p, own), largest_of_others(c.member, there));
     };
     const Interval enclosed = field_at(Vec3<Interval>{Interval(p.x), Interval(p.y), Interval(p.z)});
-    if (enclosed.hi < 1 - rounding_of_sums) return p;
-    if (!summed && enclosed.lo < 1 && field_at(p) < 1 - likely) summed = p;
+    if (enclosed.hi < 1 - off) return p;
+    if (summed) continue;
+    if (enclosed.hi < 1 - rounding_of_sums || (enclosed.lo < 1 && field_at(p) < 1 - likely)) summed = p;
   }
   return summed;
 }
