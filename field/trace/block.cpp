@@ -42,6 +42,16 @@ std::uint64_t surface_slots(const Block::Context& context, const FieldLevel& lev
   return slots;
 }
 
+// From the first to the last layer along an axis in which there is any of an octant's slots; there must be some.
+LayerSpan layers_with(std::uint64_t slots, int axis) {
+  constexpr std::uint64_t first_layer[3] = {0x1111'1111'1111'1111, 0x000f'000f'000f'000f, 0x0000'0000'0000'ffff};
+  const auto any = [&](int layer) { return (slots & first_layer[axis] << (layer << (2 * axis))) != 0; };
+  LayerSpan span{0, 4};
+  while (!any(span.first)) ++span.first;
+  while (!any(span.end - 1)) --span.end;
+  return span;
+}
+
 LevelCache& coarse_cache() {
   thread_local LevelCache cache;
   return cache;
@@ -125,20 +135,6 @@ ShareAt Block::share(const Vec3d& place) const {
   for (std::size_t k = 0; k < 3; ++k) layer[k] = static_cast<int>(std::clamp(4 * place[k] + 4, 0.0, 7.5));
   return share_at(patch(layer), place);
 }
-
-namespace {
-
-// From the first to the last layer along an axis in which there is any of an octant's slots; there must be some.
-LayerSpan layers_with(std::uint64_t slots, int axis) {
-  constexpr std::uint64_t first_layer[3] = {0x1111'1111'1111'1111, 0x000f'000f'000f'000f, 0x0000'0000'0000'ffff};
-  const auto any = [&](int layer) { return (slots & first_layer[axis] << (layer << (2 * axis))) != 0; };
-  LayerSpan span{0, 4};
-  while (!any(span.first)) ++span.first;
-  while (!any(span.end - 1)) --span.end;
-  return span;
-}
-
-}  // namespace
 
 Box3 Block::surface_box() const {
   Box3 box;  // in the block

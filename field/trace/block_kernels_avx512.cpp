@@ -11,6 +11,7 @@ namespace {
 #include "field/trace/kernels/sixteen.h"
 #include "field/trace/kernels/lanes.h"
 #include "field/trace/kernels/per_ray.h"
+#include "field/trace/kernels/vec3.h"
 #include "field/trace/kernels/sums.h"
 #include "field/trace/kernels/levels.h"
 #include "field/trace/kernels/far_on_ray.h"

@@ -16,8 +16,8 @@ struct PointField {
 
 /// The fine level of a block about a hit.
 struct FieldAround {
-  const void* block = nullptr;  ///< null: nothing is known
-  float place[3];
+  const void* block = nullptr;  ///< BlockView::owner; null: nothing is known, and the rest holds anything
+  float place[3];               ///< of the hit
   PointField field;
 };
 

@@ -34,14 +34,6 @@ inline AroundOf<float> around_in(const BlockView& block, const FieldAround* arou
   return a;
 }
 
-// The derivative of G along v.
-template <class F>
-inline void bend_of(const F (&h)[6], const F (&v)[3], F (&out)[3]) {
-  out[0] = h[0] * v[0] + h[3] * v[1] + h[4] * v[2];
-  out[1] = h[3] * v[0] + h[1] * v[1] + h[5] * v[2];
-  out[2] = h[4] * v[0] + h[5] * v[1] + h[2] * v[2];
-}
-
 // How far rays that begin at t0 beside a hit are proved to be outside by B3 and B4 of tracing.md about the hit. The ray
 // is s from it at t0, and at t0 + h no more than s + h: with h >= 16 s remainders in (s + h)^2 are at most (17/16)^2 of
 // those in h^2, and s + h is at most 17/16 h. Where patches give the angle they do so on the ray itself. Returns the
@@ -58,7 +50,7 @@ inline MaskOf<F> depart(Marcher<Rule, F>& march, const RayOf<F>& ray, const Arou
     way[k] = at[k].at - around.place[k];
     direction[k] = ray.direction[k];
   }
-  const F ss = way[0] * way[0] + way[1] * way[1] + way[2] * way[2], s = root_of(ss);
+  const F s = root_of(dot3(way, way));
   const Mask close = rays & around.known & (s < 0.01F * around.nearest);
   // For alpha < 0 the field would have to be bounded from below, too.
   if (!any(close) || march.block.iso.two_sided) return Mask{};
@@ -68,9 +60,8 @@ inline MaskOf<F> depart(Marcher<Rule, F>& march, const RayOf<F>& ray, const Arou
   sums.second = around.second;
   sums.third = around.third;
   const auto beside = march.bend_by(sums, s, s / around.nearest);
-  sums.f = around.f + (around.gradient[0] * way[0] + around.gradient[1] * way[1] + around.gradient[2] * way[2]) +
-           beside.field;
-  sums.df = around.gradient[0] * direction[0] + around.gradient[1] * direction[1] + around.gradient[2] * direction[2];
+  sums.f = around.f + dot3(around.gradient, way) + beside.field;
+  sums.df = dot3(around.gradient, direction);
   F moved[3];
   bend_of(around.h, way, moved);
   for (int k = 0; k < 3; ++k) sums.g[k] = around.g[k] + moved[k];

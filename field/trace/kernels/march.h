@@ -57,8 +57,7 @@ struct Marcher {
     p.t = t;
     p.s = sums;
     p.distance = distance;
-    const F yy = p.s.g[0] * p.s.g[0] + p.s.g[1] * p.s.g[1] + p.s.g[2] * p.s.g[2], y = root_of(yy);
-    const F dy = (p.s.g[0] * p.s.dg[0] + p.s.g[1] * p.s.dg[1] + p.s.g[2] * p.s.dg[2]) / max_of(y, 1e-12F);
+    const F y = root_of(dot3(p.s.g, p.s.g)), dy = dot3(p.s.g, p.s.dg) / max_of(y, 1e-12F);
     p.raise = 1 + rounding + roundings * position_rounding * static_cast<float>(block.degree + 1) / p.distance;
     p.y = y + g_error;
     if constexpr (Rule == Angle::Mean) angle().judge(p, at, y, dy);

@@ -26,6 +26,13 @@ class LevelGroups {
   int count_ = 0;
 };
 
+// The columns of the rows of some rays, with 0 for all others; left as they are where there are none.
+inline void find_columns_of(unsigned rays, V16 (&rows)[packet_lanes], PacketFloat (&columns)[lanes]) {
+  if (rays == 0) return;
+  for (unsigned left = ~rays & all_lane_bits; left != 0; left &= left - 1) rows[__builtin_ctz(left)] = V16{};
+  find_columns(rows, columns);
+}
+
 // The twelve sums of add_sources() over one list, with a ray in each lane.
 template <int Exponent>
 class SumsInRays {
@@ -98,14 +105,9 @@ struct PacketSummer {
     }
     if ((in_rows | in_lanes) == 0) return;
     PacketFloat columns[lanes] = {};
-    if (in_rows != 0) {
-      for (unsigned left = ~in_rows & all_lane_bits; left != 0; left &= left - 1) rows[__builtin_ctz(left)] = V16{};
-      find_columns(rows, columns);
-    }
-    if (in_lanes != 0) {
-      for (const RaysOfLevel& same : groups)
-        if (same.lanes & in_lanes) find_in_lanes<Exponent>(list(*same.level), exponent, same.lanes, columns);
-    }
+    find_columns_of(in_rows, rows, columns);
+    for (const RaysOfLevel& same : groups)
+      if (same.lanes & in_lanes) find_in_lanes<Exponent>(list(*same.level), exponent, same.lanes, columns);
     add_columns(columns, in_rows | in_lanes, static_cast<float>(Exponent > 0 ? Exponent : exponent));
   }
 
@@ -119,7 +121,8 @@ struct PacketSummer {
 
   template <int Exponent>
   V16 sums_of(int lane, const SourceList& sources, int exponent) const {
-    const auto all = [&](float v) { return v - Native{}; };
+    // To subtract 0 changes nothing, so that no instruction does it.
+    const auto all = [](float v) { return v - Native{}; };
     const Probe probe{all(at[0][lane]),
                       all(at[1][lane]),
                       all(at[2][lane]),
@@ -162,10 +165,7 @@ class PacketFar {
       for (unsigned left = same.lanes; left != 0; left &= left - 1)
         rows[__builtin_ctz(left)] = of_ray(*same.level, __builtin_ctz(left));
     }
-    if (in_rows != 0) {
-      for (unsigned left = ~in_rows & all_lane_bits; left != 0; left &= left - 1) rows[__builtin_ctz(left)] = V16{};
-      find_columns(rows, columns_);
-    }
+    find_columns_of(in_rows, rows, columns_);
     for (const RaysOfLevel& same : groups)
       if (!(same.lanes & in_rows)) find_in_lanes(*same.level, same.lanes);
   }

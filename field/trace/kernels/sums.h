@@ -67,12 +67,23 @@ inline void for_each_source(const float* at, int count, int stride, const AwayOf
   add(at, here);
 }
 
-// What sources of this share and radius add to the twelve sums of RaySums along e; the last is their largest 1 / d^2.
+// What sources of this share and radius have there: w d^-m and w d^-(m+2), w tau d^-(m+2) and w tau d^-(m+4).
+template <int Exponent>
+struct Terms {
+  Native w0, w2, k2, k4;
+
+  Terms(Native share, Native radius, int exponent, const Away& d)
+      : w0(field_of<Exponent>(share, radius, d.inverse, exponent)),
+        w2(w0 * d.inverse),
+        k2(w2 * radius),
+        k4(k2 * d.inverse) {}
+};
+
+// Adds them to the twelve sums of RaySums along e; the last is their largest 1 / d^2.
 template <int Exponent>
 inline void add_sources(Native share, Native radius, int exponent, const Away& d, Native ex, Native ey, Native ez,
                         Native (&a)[12]) {
-  const Native w0 = field_of<Exponent>(share, radius, d.inverse, exponent);
-  const Native w2 = w0 * d.inverse, k2 = w2 * radius, k4 = k2 * d.inverse;
+  const auto [w0, w2, k2, k4] = Terms<Exponent>(share, radius, exponent, d);
   const Native along = d.x * ex + d.y * ey + d.z * ez, ka = k4 * along;
   a[0] += w0;
   a[1] += w2 * along;
@@ -88,17 +99,22 @@ inline void add_sources(Native share, Native radius, int exponent, const Away& d
   a[11] = larger(a[11], d.inverse);
 }
 
-// The sums over one list for one ray, sources in lanes; what they stand for is told by add_list().
+// for_each_source() of groups, sources in lanes: add(share, radius, away). The place: floats, or the same in all lanes.
+template <class Place, class Add>
+inline void for_each_group(const float* first, int groups, Place px, Place py, Place pz, const Add& add) {
+  const auto away = [&](const float* group) {
+    return Away(px - load_native(group), py - load_native(group + 16), pz - load_native(group + 32));
+  };
+  for_each_source(first, groups, floats_per_group, away,
+                  [&](const float* group, const Away& d) { add(load_native(group + 48), load_native(group + 64), d); });
+}
+
+// The sums over one list for one ray; what they stand for is told by add_list().
 template <int Exponent>
 inline V16 sum_list(const float* first_group, int groups, int exponent, const Probe& probe, V16& nearest) {
   return sum_in_registers<12>(first_group, nearest, [&](const float* first, Native& close, auto& a) {
-    const auto away = [&](const float* group) {
-      return Away(probe.px - load_native(group), probe.py - load_native(group + 16),
-                  probe.pz - load_native(group + 32));
-    };
-    for_each_source(first, groups, floats_per_group, away, [&](const float* group, const Away& d) {
-      add_sources<Exponent>(load_native(group + 48), load_native(group + 64), exponent, d, probe.ex, probe.ey, probe.ez,
-                            a);
+    for_each_group(first, groups, probe.px, probe.py, probe.pz, [&](Native share, Native radius, const Away& d) {
+      add_sources<Exponent>(share, radius, exponent, d, probe.ex, probe.ey, probe.ez, a);
     });
     close = larger(close, a[11]);
     a[11] = Native{};
@@ -126,14 +142,9 @@ struct FullSums {
 template <int Exponent>
 inline void add_full_sums(const float* first_group, int groups, int exponent, const float p[3], V16& nearest,
                           FullSums& out) {
-  const auto away = [&](const float* group) {
-    return Away(p[0] - load_native(group), p[1] - load_native(group + 16), p[2] - load_native(group + 32));
-  };
   const V16 sums = sum_in_registers<16>(first_group, nearest, [&](const float* first, Native& close, auto& a) {
-    for_each_source(first, groups, floats_per_group, away, [&](const float* group, const Away& d) {
-      const Native radius = load_native(group + 64);
-      const Native w0 = field_of<Exponent>(load_native(group + 48), radius, d.inverse, exponent);
-      const Native w2 = w0 * d.inverse, k2 = w2 * radius, k4 = k2 * d.inverse;
+    for_each_group(first, groups, p[0], p[1], p[2], [&](Native share, Native radius, const Away& d) {
+      const auto [w0, w2, k2, k4] = Terms<Exponent>(share, radius, exponent, d);
       const Native kx = k4 * d.x, ky = k4 * d.y, kz = k4 * d.z;
       a[0] += w0;
       a[1] += w2 * d.x;
@@ -176,17 +187,13 @@ struct AngleSums {
 template <int Exponent>
 inline void add_angle_sums(const float* first_group, int groups, int exponent, const Probe& probe, AngleSums& out) {
   V16 none{};
-  const V16 sums = sum_in_registers<12>(first_group, none, [&](const float* group, Native&, auto& a) {
-    for (int k = 0; k < groups; ++k, group += floats_per_group) {
-      const Native dx = probe.px - load_native(group), dy = probe.py - load_native(group + 16),
-                   dz = probe.pz - load_native(group + 32);
-      const Native inv = 1.0F / (dx * dx + dy * dy + dz * dz);
-      const Native w0 = field_of<Exponent>(load_native(group + 48), load_native(group + 64), inv, exponent),
-                   w2 = w0 * inv;
-      a[0] += w0;
-      a[1] += w2 * (dx * probe.ex + dy * probe.ey + dz * probe.ez);
-      a[2] += w2;
-    }
+  const V16 sums = sum_in_registers<12>(first_group, none, [&](const float* first, Native&, auto& a) {
+    for_each_group(first, groups, probe.px, probe.py, probe.pz, [&](Native share, Native radius, const Away& d) {
+      const Terms<Exponent> of(share, radius, exponent, d);
+      a[0] += of.w0;
+      a[1] += of.w2 * (d.x * probe.ex + d.y * probe.ey + d.z * probe.ez);
+      a[2] += of.w2;
+    });
   });
   float s[16];
   __builtin_memcpy(s, &sums, sizeof s);

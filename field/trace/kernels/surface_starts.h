@@ -12,11 +12,6 @@ inline PacketInt first_of(int count, PacketFloat) {
   return mask_of(count < packet_lanes ? (1U << count) - 1 : all_lane_bits);
 }
 
-template <class F>
-inline F dot3(const F (&a)[3], const F (&b)[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 // How far to go along the normal until the field is certainly below 1: f and |G| there are bounded by their Taylor
 // polynomials and the remainders B3 and B4 of tracing.md, with series sums up to twice their values at 0 (a step of at
 // most a tenth of the distance). Twice the errors of the block, since a ray may start in its neighbour.
@@ -85,6 +80,7 @@ class SurfaceStart {
   void load3(const float (&of)[3][lanes], F (&to)[3]) const {
     for (int k = 0; k < 3; ++k) to[k] = from(of[k]);
   }
+
   struct Weights {
     F x, y;
   };
