@@ -1,21 +1,17 @@
 // Rays side by side, each number of theirs in an array: what vector instructions read.
 #pragma once
 
-#include <bit>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 
+#include "field/math/lane_set.h"
 #include "field/math/ray.h"
 
 namespace marrow {
 
-/// Some lanes of a packet: a bit for each, the lowest that of lane 0.
-using LaneSet = std::uint64_t;
-
 /// At most `size` rays; other lanes hold anything and are not to be asked for.
 struct RayPacket {
-  static constexpr int size = 64;
+  static constexpr int size = packet_size;
 
   alignas(64) double origin[3][size];
   alignas(64) double direction[3][size];  ///< unit vectors
@@ -43,15 +39,5 @@ struct RayPacket {
     return {at(origin), UnitVec3::unchecked(at(direction)), t_min[lane], t_max[lane], around[lane]};
   }
 };
-
-/// The first `count` lanes.
-constexpr LaneSet first_lanes(std::size_t count) { return count == 0 ? 0 : ~LaneSet{0} >> (RayPacket::size - count); }
-constexpr LaneSet lane_bit(std::size_t lane) { return LaneSet{1} << lane; }
-
-/// Calls body(lane) for each lane of a set.
-template <class Body>
-void for_each_lane(LaneSet rays, const Body& body) {
-  for (LaneSet left = rays; left != 0; left &= left - 1) body(static_cast<std::size_t>(std::countr_zero(left)));
-}
 
 }  // namespace marrow

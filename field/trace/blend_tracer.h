@@ -78,7 +78,7 @@ struct CellLog {
   }
 };
 
-/// Rays of a packet that come to one part; the lowest bit is that of lane 0.
+/// Rays of a packet that come to one part.
 struct PartRays {
   TracePart part;
   LaneSet rays;
@@ -137,7 +137,7 @@ class BlendTracer {
   /// The same for rays of a packet, each in its part, to the same bits. No ray is in two parts.
   void first_hits(std::span<const PartRays>, const RayPacket&, bool any, CellHits&) const;
   /// first_hit() in a tile, for the rays of a set.
-  void first_hits(std::size_t tile, const RayPacket&, LaneSet rays, bool any, CellHits&) const;
+  void first_hits(std::size_t tile, const RayPacket&, const LaneSet& rays, bool any, CellHits&) const;
   /// Normal and starting point at a hit in this tile.
   SurfacePoint surface_at(std::size_t tile, const Vec3d& position) const;
   /// The same in the block of a hit.
@@ -157,7 +157,7 @@ class BlendTracer {
   std::optional<Stretch> stretch_in(const Tile&, const Ray&, bool any) const;
   std::optional<Stretch> stretch_in(const Tile&, int slot, const Ray&, bool any) const;
   std::optional<Stretch> enter(const TracePart&, const Ray&, bool any, CellLog&) const;
-  LaneSet hits_in(const std::array<CellStep, RayPacket::size>&, LaneSet rays, const RayPacket&, bool any,
+  LaneSet hits_in(const std::array<CellStep, RayPacket::size>&, const LaneSet& rays, const RayPacket&, bool any,
                   CellHits&) const;
   class CellGroup;
   const Block* block_for_packets(const TracePart&) const;

@@ -12,6 +12,7 @@
 #include <limits>
 #include <string_view>
 
+#include "field/math/lane_set.h"
 #include "field/trace/field_around.h"
 #include "field/trace/iso_curve.h"
 
@@ -104,8 +105,6 @@ struct Root {
   bool enters_inside = false;   ///< a hit, but the field is clearly above 1 where surface can first be in the block
 };
 
-inline constexpr int packet_size = 64;  ///< rays of a packet
-
 /// Rays side by side in double, 64-byte aligned: the arrays of a RayPacket.
 struct PacketView {
   const double *origin[3], *direction[3], *t_min, *t_max;
@@ -120,7 +119,7 @@ struct TileLayers {
 
 /// What the search of a packet needs beside the stack, which may be small: one for each thread.
 struct PacketMemory {
-  static constexpr std::size_t of_search = 96 << 10, of_rays = 40 << 10;
+  static constexpr std::size_t of_search = 96 << 10, of_rays = packet_size * 608;
   alignas(64) unsigned char search[of_search];
   alignas(64) unsigned char rays[of_rays];
 };
@@ -138,10 +137,10 @@ struct CellPlace {
 struct CellRays {
   const BlockView* block;
   double center[3], half;  ///< of the block, in the coordinates of the rays
-  std::uint64_t rays;      ///< a bit for each, the lowest that of lane 0
+  LaneSet rays;
 };
 
-/// Of each ray of a packet in its cell; in the sets of rays the lowest bit is that of lane 0.
+/// Of each ray of a packet in its cell.
 struct CellRoots {
   alignas(64) double outside_from[packet_size];  ///< as in CellLog; in and out
   alignas(64) double enter[packet_size];         ///< where it comes into the cell, and leaves it
@@ -150,8 +149,8 @@ struct CellRoots {
   alignas(64) double undecided[packet_size];      ///< as in Root
   alignas(64) double searched_from[packet_size];  ///< the same
   alignas(64) int evaluations[packet_size];
-  std::uint64_t entered, begins_outside, enters_inside;
-  std::uint64_t met, hit;  ///< met the surface; and not behind their ends
+  LaneSet entered, begins_outside, enters_inside;
+  LaneSet met, hit;  ///< met the surface; and not behind their ends
 };
 
 /// Gaps along a ray shorter than this times the distance to the nearest source are not decided.
@@ -284,7 +283,7 @@ struct BlockKernels {
   /// The first t in [t0, t1] where the corrected field reaches 1.
   Root (*first_root)(const BlockView&, const LocalRay&, const Query&);
   /// Where rays are in a cell, if they come into it: their `enter` and `exit`. Returns those that do.
-  std::uint64_t (*enter_cell)(const CellPlace&, const PacketView&, std::uint64_t asked, bool any, CellRoots&);
+  LaneSet (*enter_cell)(const CellPlace&, const PacketView&, const LaneSet& asked, bool any, CellRoots&);
   /// first_root() for each ray in its cell, from `enter` to `exit`, where skeletons have no angle each, to the same
   /// bits.
   void (*roots_between)(const CellRays* cells, int count, const PacketView&, bool any, PacketMemory&, CellRoots&);

@@ -1,7 +1,6 @@
 // Packets of rays in tiles and cells: those that come to the same cell are traced in it together.
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <limits>
 #include <memory>
 
@@ -17,6 +16,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Of this thread, whose stack may be small.
 struct Memory {
   std::array<CellWalk, RayPacket::size> walks;
+  CellSteps steps;
+  std::array<CellRays, RayPacket::size> cells;
+  CellRoots roots;
   PacketMemory search;
 };
 Memory& memory() {
@@ -68,26 +70,26 @@ CellPlace place_of(const TracePart& part) {
 
 void add_to(CellLog& log, const CellRoots& roots, std::size_t lane) {
   log.add({roots.searched_from[lane], static_cast<std::uint32_t>(roots.evaluations[lane])});
-  if (roots.begins_outside >> lane & 1) log.side = CellLog::Side::Outside;
+  if (roots.begins_outside.has(lane)) log.side = CellLog::Side::Outside;
   log.undecided = std::min(log.undecided, roots.undecided[lane]);
 }
 
 }  // namespace
 
-// Rays of a packet that are to be searched together, each in its cell.
+// Rays of a packet that are to be searched together, each in its cell. Only one at a time in a thread.
 class BlendTracer::CellGroup {
  public:
   CellGroup(const BlendTracer& tracer, const RayPacket& packet, bool any)
       : kernels_(tracer.state_->kernels), rays_(view_of(packet)), any_(any) {}
 
-  CellRoots roots;  // in: outside_from of all rays; enter and exit of those that join()
+  CellRoots& roots = memory().roots;  // in: outside_from of all rays; enter and exit of those that join()
 
   // Those of the rays that come into the cell join. `key`: to know it by.
-  void enter(const TracePart& part, const Block& block, std::size_t key, LaneSet rays) {
+  void enter(const TracePart& part, const Block& block, std::size_t key, const LaneSet& rays) {
     join(block, key, kernels_.enter_cell(place_of(part), rays_, rays, any_, roots));
   }
-  void join(const Block& block, std::size_t key, LaneSet rays) {
-    if (rays == 0) return;
+  void join(const Block& block, std::size_t key, const LaneSet& rays) {
+    if (rays.empty()) return;
     cells_[count_] = {&block.view(), {block.center().x, block.center().y, block.center().z}, block.half(), rays};
     members_[count_++] = {&block, key};
   }
@@ -108,7 +110,7 @@ class BlendTracer::CellGroup {
   const BlockKernels& kernels_;
   const PacketView rays_;
   const bool any_;
-  std::array<CellRays, RayPacket::size> cells_;
+  std::array<CellRays, RayPacket::size>& cells_ = memory().cells;
   std::array<Member, RayPacket::size> members_;
   std::size_t count_ = 0;
 };
@@ -125,27 +127,31 @@ const Block* BlendTracer::block_for_packets(const TracePart& part) const {
 }
 
 void BlendTracer::first_hits(std::span<const PartRays> parts, const RayPacket& packet, bool any, CellHits& out) const {
+  for (const auto& [part, rays] : parts)
+    if (part.within == nullptr) first_hits(part.tile, packet, rays, any, out);
   CellGroup group(*this, packet, any);
   const auto alone = [&](const TracePart& part, std::size_t i) {
     out.hit[i] = first_hit(part, packet.ray(i), any, out.log[i]).value_or(CellHit{});
   };
-  const auto take = [&](const Block& block, std::size_t part, LaneSet rays) {
-    for_each_lane(rays, [&](std::size_t i) {
+  const auto take = [&](const Block& block, std::size_t part, const LaneSet& rays) {
+    rays.for_each([&](std::size_t i) {
       const CellRoots& roots = group.roots;
-      if (roots.enters_inside >> i & 1) return alone(parts[part].part, i);  // it may begin inside
+      if (roots.enters_inside.has(i)) return alone(parts[part].part, i);  // it may begin inside
       out.log[i].enter = roots.enter[i];
       add_to(out.log[i], roots, i);
       out.log[i].outside_from = roots.outside_from[i];
-      if (roots.hit >> i & 1) out.hit[i] = {roots.t[i], &block};
+      if (roots.hit.has(i)) out.hit[i] = {roots.t[i], &block};
     });
   };
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const auto& [part, rays] = parts[k];
-    const Block* block = part.within == nullptr ? nullptr : block_for_packets(part);
-    if (part.within == nullptr) first_hits(part.tile, packet, rays, any, out);
-    else if (block == nullptr) for_each_lane(rays, [&](std::size_t i) { alone(part, i); });
-    if (block == nullptr) continue;
-    for_each_lane(rays, [&](std::size_t i) {
+    if (part.within == nullptr) continue;
+    const Block* block = block_for_packets(part);
+    if (block == nullptr) {
+      rays.for_each([&](std::size_t i) { alone(part, i); });
+      continue;
+    }
+    rays.for_each([&](std::size_t i) {
       group.roots.outside_from[i] = out.log[i].outside_from;
       out.hit[i] = {};
       out.log[i].side = CellLog::Side::Unknown;
@@ -156,18 +162,22 @@ void BlendTracer::first_hits(std::span<const PartRays> parts, const RayPacket& p
 }
 
 // Each ray goes from cell to cell as it would alone, all of them at the same time.
-void BlendTracer::first_hits(std::size_t tile, const RayPacket& packet, LaneSet rays, bool any, CellHits& out) const {
+void BlendTracer::first_hits(std::size_t tile, const RayPacket& packet, const LaneSet& rays, bool any,
+                             CellHits& out) const {
   if (!traces_packets()) {
-    for_each_lane(
-        rays, [&](std::size_t i) { out.hit[i] = first_hit(tile, packet.ray(i), any, out.log[i]).value_or(CellHit{}); });
+    rays.for_each(
+        [&](std::size_t i) { out.hit[i] = first_hit(tile, packet.ray(i), any, out.log[i]).value_or(CellHit{}); });
     return;
   }
   const Tile& made = state_->tree.tile(tile);
   std::array<CellWalk, RayPacket::size>& walks = memory().walks;
-  CellSteps steps;
-  LaneSet open = 0;
-  const auto go_on = [&](std::size_t i) { open = walks[i].next(steps[i]) ? open | lane_bit(i) : open & ~lane_bit(i); };
-  for_each_lane(rays, [&](std::size_t i) {
+  CellSteps& steps = memory().steps;
+  LaneSet open;
+  const auto go_on = [&](std::size_t i) {
+    if (walks[i].next(steps[i])) open.add(i);
+    else open.remove(i);
+  };
+  rays.for_each([&](std::size_t i) {
     const Ray ray = packet.ray(i);
     out.hit[i] = {};
     auto [enter, exit] = clip_to_tile(made, ray, any);
@@ -177,45 +187,49 @@ void BlendTracer::first_hits(std::size_t tile, const RayPacket& packet, LaneSet 
     walks[i].start(state_->tree, state_->kernels, made, ray, enter, exit);
     go_on(i);
   });
-  while (open != 0) {
+  while (!open.empty()) {
     open &= ~hits_in(steps, open, packet, any, out);
-    for_each_lane(open, go_on);
+    const LaneSet here = open;
+    here.for_each(go_on);
   }
 }
 
 // Returns which rays meet the surface in the cells where they are.
-LaneSet BlendTracer::hits_in(const CellSteps& steps, LaneSet rays, const RayPacket& packet, bool any,
+LaneSet BlendTracer::hits_in(const CellSteps& steps, const LaneSet& rays, const RayPacket& packet, bool any,
                              CellHits& out) const {
-  LaneSet hit = 0, together = 0;
+  LaneSet hit, together;
+  const bool single = rays.count() == 1;
   const auto alone = [&](std::size_t i) {
     const CellStep& step = steps[i];
     const auto found = hit_in(*step.tile, step.slot, packet.ray(i), any, step.enter, step.exit, out.log[i]);
     if (!found) return;
-    hit |= lane_bit(i);
+    hit.add(i);
     if (found->t <= packet.t_max[i]) out.hit[i] = *found;
   };
   CellGroup group(*this, packet, any);
-  for_each_lane(rays, [&](std::size_t i) {
-    if (out.log[i].side == CellLog::Side::Inside || std::has_single_bit(rays)) return alone(i);
+  rays.for_each([&](std::size_t i) {
+    if (out.log[i].side == CellLog::Side::Inside || single) return alone(i);
     group.roots.enter[i] = steps[i].enter;
     group.roots.exit[i] = steps[i].exit;
     group.roots.outside_from[i] = out.log[i].side == CellLog::Side::Outside ? -infinity : infinity;
-    together |= lane_bit(i);
+    together.add(i);
   });
-  const auto take = [&](const Block& block, std::size_t, LaneSet in_block) {
-    for_each_lane(in_block, [&](std::size_t i) {
+  const auto take = [&](const Block& block, std::size_t, const LaneSet& in_block) {
+    in_block.for_each([&](std::size_t i) {
       const CellRoots& roots = group.roots;
-      if (roots.enters_inside >> i & 1) return alone(i);
+      if (roots.enters_inside.has(i)) return alone(i);
       add_to(out.log[i], roots, i);
-      if (!(roots.met >> i & 1)) return;
-      hit |= lane_bit(i);
-      if (roots.hit >> i & 1) out.hit[i] = {roots.t[i], &block};
+      if (!roots.met.has(i)) return;
+      hit.add(i);
+      if (roots.hit.has(i)) out.hit[i] = {roots.t[i], &block};
     });
   };
-  while (together != 0) {
-    const CellStep& cell = steps[static_cast<std::size_t>(std::countr_zero(together))];
-    LaneSet here = 0;
-    for_each_lane(together, [&](std::size_t i) { here |= static_cast<LaneSet>(steps[i].is_cell_of(cell)) << i; });
+  while (!together.empty()) {
+    const CellStep& cell = steps[static_cast<std::size_t>(together.lowest())];
+    LaneSet here;
+    together.for_each([&](std::size_t i) {
+      if (steps[i].is_cell_of(cell)) here.add(i);
+    });
     together &= ~here;
     const Block& b = block(*cell.tile, cell.slot);
     if (b.empty()) cell.tile->note_empty(cell.slot);

@@ -132,7 +132,7 @@ void FieldSolid::hits_in_parts(std::span<const LanesInPart> parts, const RayPack
   b.places.clear();
   for (const auto& [part, lanes] : parts) {
     b.places.push_back({{part->element, static_cast<const Tile*>(part->within), part->slot}, lanes});
-    for_each_lane(lanes, [&](std::size_t i) {
+    lanes.for_each([&](std::size_t i) {
       b.stretch[i] = 1;
       if (!in_world_) {
         const LocalRay local = to_local(packet.ray(i));
@@ -145,7 +145,7 @@ void FieldSolid::hits_in_parts(std::span<const LanesInPart> parts, const RayPack
   }
   tracer_->first_hits(b.places, in_world_ ? packet : b.packet, any, b.cells);
   for (const auto& [part, lanes] : parts)
-    for_each_lane(lanes, [&](std::size_t i) {
+    lanes.for_each([&](std::size_t i) {
       to_world(b.cells.log[i], b.stretch[i], b.visits[i], log.lanes[i]);
       if (part->within == nullptr && !any) log.lanes[i].begins_inside = false;  // as of an element in hit()
       const CellHit& hit = b.cells.hit[i];
@@ -165,7 +165,7 @@ std::vector<SolidPart> FieldSolid::parts() const {
 }
 
 void FieldSolid::describe(std::span<const HitToDescribe> hits) const {
-  constexpr std::size_t most = RayPacket::size;
+  constexpr std::size_t most = 64;  // of them on the stack
   for (; hits.size() > most; hits = hits.subspan(most)) describe(hits.first(most));
   std::array<SurfaceQuery, most> asked;
   std::array<SurfacePoint, most> found;

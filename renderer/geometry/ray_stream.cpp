@@ -109,7 +109,7 @@ class Stream {
     const PartEntry at = next_part(together[0]);
     const PartsOfSolid& of = hierarchy_.solid(at.solid);
     in_lanes.solid = at.solid;
-    in_lanes.parts.push_back({&of.parts[at.part], first_lanes(together.size()) << in_lanes.count});
+    in_lanes.parts.push_back({&of.parts[at.part], LaneSet::range(in_lanes.count, together.size())});
     for (const std::uint32_t i : together) {
       StreamedRay& ray = memory_.rays[i];
       in_lanes.rays[in_lanes.count] = &ray;

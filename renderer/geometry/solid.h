@@ -109,7 +109,7 @@ inline std::vector<SolidPart> Solid::parts() const {
 inline void Solid::hits_one_by_one(std::span<const LanesInPart> parts, const RayPacket& packet, bool any,
                                    PacketLog& log) const {
   for (const auto& [part, lanes] : parts)
-    for_each_lane(lanes, [&](std::size_t lane) {
+    lanes.for_each([&](std::size_t lane) {
       const auto t = hit_in_part(*part, packet.ray(lane), any, log.lanes[lane]);
       log.t[lane] = t.value_or(std::numeric_limits<double>::infinity());
     });

@@ -15,7 +15,7 @@ namespace {
 using Hits = std::vector<std::optional<SurfaceHit>>;
 using Rays = std::vector<Ray>;
 
-constexpr int together = 100;  // more than go into a packet
+constexpr int together = RayPacket::size + 36;  // more than go into a packet
 
 MeshShape shards(Random& random) {
   MeshShape mesh;

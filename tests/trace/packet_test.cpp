@@ -62,15 +62,16 @@ Rays leaving(Random& random, const BlendTracer& tracer, const Rays& arriving, St
   return rays;
 }
 
-constexpr LaneSet all = first_lanes(RayPacket::size);
+constexpr LaneSet all = LaneSet::range(0, RayPacket::size);
 
 // One, a few, or about half of them.
 LaneSet some_lanes(Random& random) {
-  LaneSet lanes = 0;
+  LaneSet lanes;
   const double share = std::exp2(random.between(-6, 0));
   for (std::size_t i = 0; i < RayPacket::size; ++i)
-    if (random.between(0, 1) < share) lanes |= lane_bit(i);
-  return lanes | lane_bit(static_cast<std::size_t>(random.whole(0, RayPacket::size - 1)));
+    if (random.between(0, 1) < share) lanes.add(i);
+  lanes.add(static_cast<std::size_t>(random.whole(0, RayPacket::size - 1)));
+  return lanes;
 }
 
 struct Compared {
@@ -95,7 +96,7 @@ void expect_same_in_tiles(const BlendTracer& tracer, const Rays& rays, LaneSet a
   for (std::size_t tile = 0; tile < tracer.tile_count(); ++tile) {
     CellHits found;
     tracer.first_hits(tile, packet, asked, any, found);
-    for_each_lane(asked, [&](std::size_t i) {
+    asked.for_each([&](std::size_t i) {
       CellLog log;
       const auto expected = tracer.first_hit(tile, rays[i], any, log);
       expect_same(found, i, expected, log);
@@ -108,12 +109,12 @@ using Places = std::array<std::size_t, RayPacket::size>;  // the part of each ra
 void expect_same_in_parts(const BlendTracer& tracer, const std::vector<TracePart>& parts, const Places& part_of,
                           const Rays& rays, LaneSet asked, bool any) {
   std::map<std::size_t, LaneSet> in_part;
-  for_each_lane(asked, [&](std::size_t i) { in_part[part_of[i]] |= lane_bit(i); });
+  asked.for_each([&](std::size_t i) { in_part[part_of[i]].add(i); });
   std::vector<PartRays> together;
   for (const auto& [part, lanes] : in_part) together.push_back({parts[part], lanes});
   CellHits found;
   tracer.first_hits(together, RayPacket(rays), any, found);
-  for_each_lane(asked, [&](std::size_t i) {
+  asked.for_each([&](std::size_t i) {
     CellLog log;
     const auto expected = tracer.first_hit(parts[part_of[i]], rays[i], any, log);
     expect_same(found, i, expected, log);
@@ -155,7 +156,7 @@ void expect_same(const BlendTracer& tracer, const Rays& rays, LaneSet asked, boo
     for (std::size_t i = 0; i < rays.size(); ++i) found.log[i].outside_from = outside_from[i];
     const PartRays all_in_part{part, asked};
     tracer.first_hits(std::span(&all_in_part, 1), packet, any, found);
-    for_each_lane(asked, [&](std::size_t i) {
+    asked.for_each([&](std::size_t i) {
       CellLog log;
       log.outside_from = outside_from[i];
       const auto expected = tracer.first_hit(part, rays[i], any, log);
@@ -165,7 +166,7 @@ void expect_same(const BlendTracer& tracer, const Rays& rays, LaneSet asked, boo
       outside_from[i] = log.outside_from;
     });
   }
-  count.rays += std::popcount(asked);
+  count.rays += asked.count();
 }
 
 class Packets : public testing::TestWithParam<Setting> {};

@@ -30,49 +30,52 @@ class BlockSearch {
     static_assert(sizeof(BlockRays) + sizeof(Own) <= PacketMemory::of_rays);
     rays_ = reinterpret_cast<BlockRays*>(memory.rays);
     own_ = reinterpret_cast<Own*>(memory.rays + sizeof(BlockRays));
-    for (int i = 0; i < count; ++i) {
-      own_->slots[i].known = 0;
-      own_->level[i] = nullptr;
-    }
+    for (int i = 0; i < count; ++i) own_->slots[i].known = 0;
   }
 
   // As first_root() of each of these rays.
-  void run(std::uint64_t open) {
+  void run(LaneSet open) {
     BlockRays& r = *rays_;
-    r.enters_inside = r.hit = 0;
-    for (int first = 0; first < packet_size; first += packet_lanes) {
+    r.enters_inside = r.hit = {};
+    open.for_each_group<packet_lanes>([&](int first) {
       store(all_lanes<PacketFloat>(infinity), r.undecided + first);
       store(PacketFloat{}, r.t + first);
       const PacketInt none{};
       __builtin_memcpy(r.evaluations + first, &none, sizeof none);
-    }
+    });
+    const LaneSet asked = open;
     open &=
-        ~in_levels<&BlockView::fine>(open & r.from_surface, [&](std::uint64_t rays) { return leave_surfaces(rays); });
+        ~in_levels<&BlockView::fine>(open & r.from_surface, [&](const LaneSet& rays) { return leave_surfaces(rays); });
     start_runs(open);
-    open &= next_runs(open);
-    __builtin_memcpy(r.searched_from, r.begin, sizeof r.begin);
-    while (open != 0) {
-      surely_inside_ = 0;
-      const std::uint64_t near =
-          in_levels<&BlockView::coarse>(open, [&](std::uint64_t rays) { return approach_all(rays); });
-      const std::uint64_t met =
-          surely_inside_ | in_levels<&BlockView::fine>(near, [&](std::uint64_t rays) { return decide_all(rays); });
+    open = next_runs(open);
+    asked.for_each_group<packet_lanes>(
+        [&](int first) { store(load_native(r.begin + first), r.searched_from + first); });
+    while (!open.empty()) {
+      surely_inside_ = {};
+      const LaneSet near = in_levels<&BlockView::coarse>(open, [&](const LaneSet& rays) { return approach_all(rays); });
+      const LaneSet met =
+          surely_inside_ | in_levels<&BlockView::fine>(near, [&](const LaneSet& rays) { return decide_all(rays); });
       r.hit |= met;
-      const std::uint64_t unknown = met & ~r.begins_outside;
-      if (unknown != 0) find_sides(unknown);
+      find_sides(met & ~r.begins_outside);
       open &= ~met;
-      open &= next_runs(open);
+      open = next_runs(open);
     }
   }
 
  private:
   static constexpr int groups = packet_size / packet_lanes;
 
+  // Of as many rays as there are lanes; made in place.
+  struct RunsOfGroup : Runs<Rule, PacketFloat> {
+    using Runs<Rule, PacketFloat>::Runs;
+    static void* operator new(std::size_t, void* place) noexcept { return place; }
+  };
+
   // What is kept of the rays beside BlockRays.
   struct Own {
-    Runs<Rule, PacketFloat> runs[groups];  // of as many rays as there are lanes
-    SlotWords slots[packet_size];          // of each cell
-    const FieldLevel* level[packet_size];  // of each cell, in which its rays are searched now
+    RunsOfGroup runs[groups];
+    SlotWords slots[packet_size];  // of each cell
+    PacketLevels levels;
   };
 
   static void store(PacketFloat v, float* to) { __builtin_memcpy(to, &v, sizeof v); }
@@ -83,31 +86,23 @@ class BlockSearch {
     }
   }
 
-  // search(rays), of as many of the rays at a time as have levels that stay good together; joins what it returns. Two
-  // cells whose levels are not kept may be given the same memory for them, the later one last.
+  // search(rays), of as many of the rays at a time as have levels that stay good together; joins what it returns.
   template <const FieldLevel& (BlockView::*Make)() const, class Find>
-  std::uint64_t in_levels(std::uint64_t rays, const Find& search) {
-    std::uint64_t found = 0;
-    while (rays != 0) {
-      std::uint64_t ready = 0;
-      for (int i = 0; i < cell_count_; ++i) {
-        if (!(cells_[i].rays & rays)) continue;
-        own_->level[i] = &(cells_[i].block->*Make)();
-        for (int k = 0; k < i; ++k)
-          if (own_->level[k] == own_->level[i]) ready &= ~cells_[k].rays;
-        ready |= cells_[i].rays & rays;
-      }
+  LaneSet in_levels(LaneSet rays, const Find& search) {
+    LaneSet found;
+    while (!rays.empty()) {
+      const LaneSet ready = own_->levels.template make<Make>(cells_, cell_count_, rays_->cell, rays);
       found |= search(ready);
       rays &= ~ready;
     }
     return found;
   }
 
-  const FieldLevel& level_of(int ray) const { return *own_->level[rays_->cell[ray]]; }
-  const FieldLevel& any_level(std::uint64_t rays) const { return level_of(__builtin_ctzll(rays)); }
+  const FieldLevel& level_of(int ray) const { return own_->levels[rays_->cell[ray]]; }
+  const FieldLevel& any_level(const LaneSet& rays) const { return level_of(rays.lowest()); }
 
   // Those that wait, in free lanes.
-  PacketInt seat(Lanes& at, std::uint64_t& waiting, PacketRays& rays, LevelOf<PacketFloat>& level) const {
+  PacketInt seat(Lanes& at, LaneSet& waiting, PacketRays& rays, LevelOf<PacketFloat>& level) const {
     const PacketInt seated = at.seat(waiting);
     load_rays(at, seated, rays);
     at.for_each(seated, [&](int lane, int ray) { level.set(lane, level_of(ray), rays_->cell[ray]); });
@@ -134,12 +129,12 @@ class BlockSearch {
   }
 
   // Returns the rays that end here.
-  std::uint64_t leave_surfaces(std::uint64_t leaving) {
+  LaneSet leave_surfaces(LaneSet leaving) {
     BlockRays& r = *rays_;
-    std::uint64_t ended = 0;
+    LaneSet ended;
     PacketRays rays{{}, {}, &memory_};
     LevelOf<PacketFloat> level(any_level(leaving));
-    while (leaving != 0) {
+    while (!leaving.empty()) {
       Lanes at;
       const PacketInt here = seat(at, leaving, rays, level);
       const QueryOf<PacketFloat> query{at.load(r.from), at.load(r.to), any_root_, false, here, PacketInt{}};
@@ -151,19 +146,19 @@ class BlockSearch {
                                                   around, query, here, root, front);
       at.store(here, r.from, front);
       at.store(here & root.hit, r.t, root.t);
-      r.hit |= at.in_packet(root.hit);
-      r.begins_outside |= at.in_packet(root.begins_outside);
-      r.enters_inside |= at.in_packet(root.enters_inside);
-      ended |= at.in_packet(here & !go_on);
+      at.add_to(r.hit, root.hit);
+      at.add_to(r.begins_outside, root.begins_outside);
+      at.add_to(r.enters_inside, root.enters_inside);
+      at.add_to(ended, here & !go_on);
     }
     return ended;
   }
 
-  PacketRays rays_of_group(int group) const {
+  PacketRays rays_of_group(int first) const {
     PacketRays rays;
     for (int k = 0; k < 3; ++k) {
-      rays.origin[k] = load_native(rays_->origin[k] + packet_lanes * group);
-      rays.direction[k] = load_native(rays_->direction[k] + packet_lanes * group);
+      rays.origin[k] = load_native(rays_->origin[k] + first);
+      rays.direction[k] = load_native(rays_->direction[k] + first);
     }
     rays.memory = &memory_;
     return rays;
@@ -175,39 +170,36 @@ class BlockSearch {
     for (int i = 0; i <= SharePatch::degree; ++i) store(share.way.c[i], rays_->share[i] + first);
   }
 
-  void start_runs(std::uint64_t open) {
+  void start_runs(const LaneSet& open) {
     const BlockRays& r = *rays_;
-    for (int i = 0; i < groups; ++i) {
-      if (!(open >> (packet_lanes * i) & all_lane_bits)) continue;
-      const PacketRays ray = rays_of_group(i);
+    open.for_each_group<packet_lanes>([&](int first) {
+      const PacketRays ray = rays_of_group(first);
       PacketInt cell;
-      __builtin_memcpy(&cell, r.cell + packet_lanes * i, sizeof cell);
+      __builtin_memcpy(&cell, r.cell + first, sizeof cell);
       const BlocksOf<PacketFloat> blocks{cells_, cell};
-      own_->runs[i] =
-          Runs<Rule, PacketFloat>(blocks, SlotBits<PacketFloat>(blocks, own_->slots), ray,
-                                  load_native(r.from + packet_lanes * i), load_native(r.to + packet_lanes * i));
-    }
+      new (&own_->runs[first / packet_lanes]) RunsOfGroup(blocks, SlotBits<PacketFloat>(blocks, own_->slots), ray,
+                                                          load_native(r.from + first), load_native(r.to + first));
+    });
   }
 
   // Returns the rays that have one.
-  std::uint64_t next_runs(std::uint64_t open) {
-    std::uint64_t found = 0;
-    for (int i = 0; i < groups; ++i) {
-      const auto of_group = static_cast<unsigned>(open >> (packet_lanes * i) & all_lane_bits);
-      if (of_group == 0) continue;
-      Run<PacketFloat> run{load_native(rays_->begin + packet_lanes * i), load_native(rays_->end + packet_lanes * i)};
-      found |= static_cast<std::uint64_t>(lane_bits(own_->runs[i].next(mask_of(of_group), run))) << (packet_lanes * i);
-      store(run.begin, rays_->begin + packet_lanes * i);
-      store(run.end, rays_->end + packet_lanes * i);
-      if constexpr (Rule == Angle::Patched) store_shares(own_->runs[i], rays_of_group(i), run.begin, packet_lanes * i);
-    }
+  LaneSet next_runs(const LaneSet& open) {
+    LaneSet found;
+    open.for_each_group<packet_lanes>([&](int first) {
+      RunsOfGroup& runs = own_->runs[first / packet_lanes];
+      Run<PacketFloat> run{load_native(rays_->begin + first), load_native(rays_->end + first)};
+      found.add_group(first, lane_bits(runs.next(mask_of(open.group<packet_lanes>(first)), run)));
+      store(run.begin, rays_->begin + first);
+      store(run.end, rays_->end + first);
+      if constexpr (Rule == Angle::Patched) store_shares(runs, rays_of_group(first), run.begin, first);
+    });
     return found;
   }
 
   // Returns the rays whose runs the fine level has to decide.
-  std::uint64_t approach_all(std::uint64_t waiting) {
+  LaneSet approach_all(LaneSet waiting) {
     BlockRays& r = *rays_;
-    std::uint64_t near = 0;
+    LaneSet near;
     PacketRays rays{{}, {}, &memory_};
     LevelOf<PacketFloat> level(any_level(waiting));
     AngleOnRuns<Rule> angle;
@@ -216,7 +208,7 @@ class BlockSearch {
     Approach<Rule, PacketFloat> approach(search, any_root_);
     Lanes at;
     for (;;) {
-      if (waiting != 0) {
+      if (!waiting.empty()) {
         const PacketInt seated = seat(at, waiting, rays, level);
         angle.load(at, seated, r);
         const PacketFloat begin = at.load(r.begin), end = at.load(r.end);
@@ -235,17 +227,17 @@ class BlockSearch {
       at.store(now_near, r.guess, min_of(max_of(approach.guess, search.front), search.end));
       at.store(inside, r.t, search.inside.t);
       at.add(ended, r.evaluations, march.evaluations);
-      r.begins_outside |= at.in_packet(ended & search.have_last);
-      near |= at.in_packet(now_near);
-      surely_inside_ |= at.in_packet(inside);
+      at.add_to(r.begins_outside, ended & search.have_last);
+      at.add_to(near, now_near);
+      at.add_to(surely_inside_, inside);
       at.leave(ended);
     }
   }
 
   // Returns the rays that have met the surface.
-  std::uint64_t decide_all(std::uint64_t waiting) {
+  LaneSet decide_all(LaneSet waiting) {
     BlockRays& r = *rays_;
-    std::uint64_t met = 0;
+    LaneSet met;
     PacketRays rays{{}, {}, &memory_};
     LevelOf<PacketFloat> level(any_level(waiting));
     AngleOnRuns<Rule> angle;
@@ -254,7 +246,7 @@ class BlockSearch {
     Decision<Rule, PacketFloat> decision(search, PacketFloat{}, any_root_);
     Lanes at;
     for (;;) {
-      if (waiting != 0) {
+      if (!waiting.empty()) {
         const PacketInt seated = seat(at, waiting, rays, level);
         angle.load(at, seated, r);
         search.restart(seated, at.load(r.front), at.load(r.end));
@@ -270,17 +262,16 @@ class BlockSearch {
       at.store(hit, r.t, decision.t);
       at.store(ended, r.undecided, min_of(at.load(r.undecided), decision.undecided()));
       at.add(ended, r.evaluations, decision.samples);
-      r.begins_outside |= at.in_packet(ended & search.have_last);
-      met |= at.in_packet(hit);
+      at.add_to(r.begins_outside, ended & search.have_last);
+      at.add_to(met, hit);
       at.leave(ended);
     }
   }
 
   // A ray that begins inside meets a root where it leaves.
-  void find_sides(std::uint64_t asked) {
+  void find_sides(const LaneSet& asked) {
     BlockRays& r = *rays_;
-    for (; asked != 0; asked &= asked - 1) {
-      const int lane = __builtin_ctzll(asked);
+    asked.for_each([&](int lane) {
       LocalRay ray;
       for (int k = 0; k < 3; ++k) {
         ray.origin[k] = r.origin[k][lane];
@@ -292,8 +283,8 @@ class BlockSearch {
         for (int i = 0; i <= SharePatch::degree; ++i) angle.run.way.c[i] = r.share[i][lane];
       }
       const BlockView& block = *cells_[r.cell[lane]].block;
-      if (is_inside<Rule>(block, ray, r.begin[lane], angle.source)) r.enters_inside |= std::uint64_t{1} << lane;
-    }
+      if (is_inside<Rule>(block, ray, r.begin[lane], angle.source)) r.enters_inside.add(lane);
+    });
   }
 
   const CellRays* cells_;
@@ -303,5 +294,5 @@ class BlockSearch {
   PacketMemory& memory_;
   BlockRays* rays_;
   Own* own_;
-  std::uint64_t surely_inside_ = 0;
+  LaneSet surely_inside_;
 };

@@ -28,7 +28,7 @@ inline Floats first_min(Floats a, Floats b) { return b < a ? b : a; }
 inline Floats first_max(Floats a, Floats b) { return a < b ? b : a; }
 inline Floats narrowed(Doubles v) { return __builtin_convertvector(v, Floats); }
 inline Doubles widened(Floats v) { return __builtin_convertvector(v, Doubles); }
-inline DoubleMask double_mask(std::uint64_t bits) {
+inline DoubleMask double_mask(unsigned bits) {
 #if defined(__AVX512F__)
   const DoubleMask bit{1, 2, 4, 8, 16, 32, 64, 128};
 #elif defined(__AVX__)
@@ -36,7 +36,7 @@ inline DoubleMask double_mask(std::uint64_t bits) {
 #else
   const DoubleMask bit{1, 2};
 #endif
-  return (bit & static_cast<long long>(bits & all_double_bits)) != 0;
+  return (bit & static_cast<long long>(bits)) != 0;
 }
 inline unsigned bits_of_mask(DoubleMask mask) {
 #if defined(__AVX512DQ__)
@@ -139,25 +139,18 @@ struct Entry {
   }
 };
 
-// Calls visit(first) for each few rays that go together in doubles, of which any is in the set.
-template <class Visit>
-inline void for_each_few(std::uint64_t rays, const Visit& visit) {
-  for (int first = 0; first < packet_size; first += double_lanes)
-    if (rays >> first & all_double_bits) visit(first);
-}
-
 // Where the rays are in the cell; returns those that come into it.
-std::uint64_t enter_cell(const CellPlace& cell, const PacketView& rays, std::uint64_t asked, bool any_root,
-                         CellRoots& out) {
-  std::uint64_t entered = 0;
-  for_each_few(asked, [&](int first) {
+LaneSet enter_cell(const CellPlace& cell, const PacketView& rays, const LaneSet& asked, bool any_root, CellRoots& out) {
+  LaneSet entered;
+  asked.for_each_group<double_lanes>([&](int first) {
     const Entry entry(cell, SomeRays(rays, first), any_root);
-    const DoubleMask here = double_mask(asked >> first);  // their neighbours may be in other cells
+    const unsigned together = asked.group<double_lanes>(first);
+    const DoubleMask here = double_mask(together);  // their neighbours may be in other cells
     store(here ? entry.stretch.enter : load(out.enter + first), out.enter + first);
     store(here ? entry.stretch.exit : load(out.exit + first), out.exit + first);
-    entered |= static_cast<std::uint64_t>(entry.entered) << first;
+    entered.add_group(first, entry.entered & together);
   });
-  return entered & asked;
+  return entered;
 }
 
 // The blocks of the rays.
@@ -174,10 +167,10 @@ struct Frames {
 };
 
 // The rays in the coordinates of their blocks.
-inline void enter_blocks(const Frames& frames, const PacketView& rays, std::uint64_t asked, const CellRoots& at,
+inline void enter_blocks(const Frames& frames, const PacketView& rays, const LaneSet& asked, const CellRoots& at,
                          BlockRays& out) {
-  std::uint64_t from_surface = 0, from_outside = 0;
-  for_each_few(asked, [&](int first) {
+  LaneSet from_surface, from_outside;
+  asked.for_each_group<double_lanes>([&](int first) {
     const SomeRays ray(rays, first);
     const RaysInCube<Doubles> block = frames.of(ray, first);
     const Doubles enter = load(at.enter + first);
@@ -187,22 +180,19 @@ inline void enter_blocks(const Frames& frames, const PacketView& rays, std::uint
       store(block.origin[k], out.origin[k] + first);
       store(block.direction[k], out.direction[k] + first);
     }
-    from_surface |= static_cast<std::uint64_t>(bits_of_mask(enter <= ray.t_min)) << first;
-    from_outside |= static_cast<std::uint64_t>(bits_of_mask(enter >= load(at.outside_from + first))) << first;
+    from_surface.add_group(first, bits_of_mask(enter <= ray.t_min));
+    from_outside.add_group(first, bits_of_mask(enter >= load(at.outside_from + first)));
   });
   out.from_surface = from_surface & asked;
-  for (std::uint64_t left = out.from_surface; left != 0; left &= left - 1) {
-    const int ray = __builtin_ctzll(left);
-    out.around[ray] = rays.around[ray];
-  }
+  out.from_surface.for_each([&](int ray) { out.around[ray] = rays.around[ray]; });
   out.begins_outside = from_outside & asked;
 }
 
 // The roots as places on the rays.
-inline void leave_blocks(const Frames& frames, const PacketView& rays, std::uint64_t asked, const BlockRays& roots,
+inline void leave_blocks(const Frames& frames, const PacketView& rays, const LaneSet& asked, const BlockRays& roots,
                          bool any_root, CellRoots& out) {
-  std::uint64_t in_time = 0;
-  for_each_few(asked, [&](int first) {
+  LaneSet in_time;
+  asked.for_each_group<double_lanes>([&](int first) {
     const SomeRays ray(rays, first);
     const RaysInCube<Doubles> block = frames.of(ray, first);
     const Doubles exit = load(out.exit + first), enter = load(out.enter + first);
@@ -211,10 +201,11 @@ inline void leave_blocks(const Frames& frames, const PacketView& rays, std::uint
     store(at, out.t + first);
     store(block.to_world(load_floats(roots.undecided + first)), out.undecided + first);
     store(block.to_world(load_floats(roots.searched_from + first)), out.searched_from + first);
-    in_time |= static_cast<std::uint64_t>(bits_of_mask(at <= ray.t_max)) << first;
+    in_time.add_group(first, bits_of_mask(at <= ray.t_max));
     // Where the ray begins in this part, it begins outside.
     const Doubles from = load(out.outside_from + first), here = enter <= ray.t_min ? ray.t_min : exit;
-    store(double_mask(roots.begins_outside >> first) ? first_min(from, here) : from, out.outside_from + first);
+    store(double_mask(roots.begins_outside.group<double_lanes>(first)) ? first_min(from, here) : from,
+          out.outside_from + first);
   });
   __builtin_memcpy(out.evaluations, roots.evaluations, sizeof out.evaluations);
   out.met = roots.hit;
@@ -228,18 +219,17 @@ void roots_between(const CellRays* cells, int count, const PacketView& rays, boo
   BlockRays& in_blocks = *reinterpret_cast<BlockRays*>(memory.rays);
   Frames frames;
   __builtin_memset(in_blocks.cell, 0, sizeof in_blocks.cell);
-  std::uint64_t asked = 0;
+  LaneSet asked;
   for (int i = 0; i < count; ++i) {
     asked |= cells[i].rays;
-    for (std::uint64_t left = cells[i].rays; left != 0; left &= left - 1) {
-      const int ray = __builtin_ctzll(left);
+    cells[i].rays.for_each([&](int ray) {
       in_blocks.cell[ray] = i;
       frames.set(ray, cells[i]);
-    }
+    });
   }
   out.entered = asked;
-  out.met = out.hit = out.begins_outside = out.enters_inside = 0;
-  if (asked == 0) return;
+  out.met = out.hit = out.begins_outside = out.enters_inside = {};
+  if (asked.empty()) return;
   enter_blocks(frames, rays, asked, out, in_blocks);
   if (cells[0].block->find_patch != nullptr) BlockSearch<Angle::Patched>(cells, count, any_root, memory).run(asked);
   else BlockSearch<Angle::One>(cells, count, any_root, memory).run(asked);

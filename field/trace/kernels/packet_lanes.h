@@ -12,22 +12,24 @@ struct BlockRays {
   alignas(64) int cell[packet_size];
   const FieldAround* around[packet_size];                        // of those that begin at a surface
   alignas(64) float share[SharePatch::degree + 1][packet_size];  // ShareOnRun of the run, where patches give the angle
-  std::uint64_t from_surface;                                    // as in QueryOf
-  std::uint64_t begins_outside, enters_inside, hit;              // as in RootOf
+  LaneSet from_surface;                                          // as in QueryOf
+  LaneSet begins_outside, enters_inside, hit;                    // as in RootOf
 };
 
 // Which ray of the packet is in which lane: when one has ended, another one takes its place.
 class Lanes {
  public:
   // In as many free lanes as there are rays; takes these away from the set. Returns the lanes.
-  PacketInt seat(std::uint64_t& waiting) {
-    unsigned seated = 0;
+  PacketInt seat(LaneSet& waiting) {
     alignas(64) int at[packet_lanes];
     __builtin_memcpy(at, &at_, sizeof at);
-    for (unsigned free = ~taken_ & all_lane_bits; free != 0 && waiting != 0; free &= free - 1, waiting &= waiting - 1) {
-      at[__builtin_ctz(free)] = __builtin_ctzll(waiting);
-      seated |= free & -free;
-    }
+    const unsigned all_free = ~taken_ & all_lane_bits;
+    unsigned free = all_free;
+    waiting.take(__builtin_popcount(free), [&](int ray) {
+      at[__builtin_ctz(free)] = ray;
+      free &= free - 1;
+    });
+    const unsigned seated = all_free & ~free;
     __builtin_memcpy(&at_, at, sizeof at_);
     taken_ |= seated;
     return mask_of(seated);
@@ -54,11 +56,9 @@ class Lanes {
     for_each(which, [&](int lane, int ray) { of_packet[ray] += v[lane]; });
   }
 #endif
-  // As bits of the packet.
-  std::uint64_t in_packet(PacketInt which) const {
-    std::uint64_t bits = 0;
-    for_each(which, [&](int, int ray) { bits |= std::uint64_t{1} << ray; });
-    return bits;
+  // The rays in these lanes.
+  void add_to(LaneSet& rays, PacketInt which) const {
+    for_each(which, [&](int, int ray) { rays.add(ray); });
   }
 
   // Calls visit(lane, ray).
