@@ -1,6 +1,7 @@
 #include "renderer/transport/pixel_block.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -18,15 +19,18 @@ void for_each_pixel(const PixelWindow& window, const Visit& visit) {
         for (int x = x0; x < std::min(x0 + side, window.x1); ++x) visit(x, y);
 }
 
-// The pixels of a block, and one camera sample of each: one entry a pixel in all lists.
+// Camera samples of the pixels of a block, those of a pixel in order: one entry a sample in all lists.
 struct Block {
-  Block(const PixelWindow& window, std::uint64_t seed, Film& film) {
-    const auto count = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
+  Block(const PixelWindow& window, Pass samples, std::uint64_t seed, Film& film) {
+    const std::size_t count = static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height()) *
+                              static_cast<std::size_t>(samples.count);
     pixels.reserve(count);
     samplers.reserve(count);
     for_each_pixel(window, [&](int x, int y) {
-      pixels.push_back({x + 0.5, y + 0.5, &film.at(x, y)});
-      samplers.emplace_back(x, y, seed);
+      for (int i = samples.first; i < samples.first + samples.count; ++i) {
+        pixels.push_back({x + 0.5, y + 0.5, &film.at(x, y)});
+        samplers.emplace_back(x, y, seed).start(static_cast<std::uint32_t>(i));
+      }
     });
     rays.resize(count);
     hits.resize(count);
@@ -36,7 +40,7 @@ struct Block {
     double middle_x, middle_y;
     PixelSums* sums;
   };
-  std::vector<Pixel> pixels;
+  std::vector<Pixel> pixels;  // of each sample
   std::vector<Sampler> samplers;
   std::vector<Ray> rays;
   std::vector<std::optional<SurfaceHit>> hits;
@@ -66,10 +70,6 @@ void trace_centres(const RenderScene& scene, Block& block) {
   }
 }
 
-void start_samples(Block& block, int index) {
-  for (Sampler& sampler : block.samplers) sampler.start(static_cast<std::uint32_t>(index));
-}
-
 void trace_samples(const PixelJob& job, Block& block) {
   for (std::size_t i = 0; i < block.pixels.size(); ++i) {
     const Sample2 offset = job.filter.offset(block.samplers[i].next_2d());
@@ -93,20 +93,19 @@ void add_samples(const PixelJob& job, Block& block) {
 }  // namespace
 
 void render_block(const PixelJob& job, const PixelWindow& window, Pass pass, Film& film) {
-  Block block(window, job.seed, film);
   if (pass.first == 0) {
+    Block block(window, {0, 1}, job.seed, film);
     trace_centres(job.scene, block);
-    if (job.samples == 1) {
-      start_samples(block, 0);
-      add_samples(job, block);
-      return;
-    }
+    if (job.samples == 1) return add_samples(job, block);
   }
-  for (int i = pass.first; i < pass.first + pass.count; ++i) {
-    start_samples(block, i);
-    trace_samples(job, block);
-    add_samples(job, block);
-  }
+  Block block(window, pass, job.seed, film);
+  trace_samples(job, block);
+  add_samples(job, block);
+}
+
+BlockSize block_size(int samples) {
+  const int halvings = std::bit_width(static_cast<unsigned>(samples)) - 1;
+  return {std::max(1, block_side >> (halvings + 1) / 2), std::max(1, block_side >> halvings / 2)};
 }
 
 }  // namespace marrow

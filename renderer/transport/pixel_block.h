@@ -24,10 +24,17 @@ struct PixelJob {
   PixelFilter filter{};
 };
 
-/// The side of a block: many rays of it come to the same parts of surfaces, and what it holds fits into a cache.
+/// The side of a block of one sample a pixel: many rays of it come to the same parts of surfaces, and what it holds
+/// fits into a cache.
 constexpr int block_side = 32;
 
-/// The samples of a pass of at most block_side x block_side pixels of the film. A pixel's samples are added in order,
+struct BlockSize {
+  int width = block_side, height = block_side;
+};
+/// Of blocks with so many samples a pixel: they hold 32 x 32 samples, or up to twice as many.
+BlockSize block_size(int samples);
+
+/// The samples of a pass of a few pixels of the film, together. A pixel's samples are added in order,
 /// and have the same bits whatever pixels are with it. The channels free of noise come from a ray through the pixel's
 /// middle, traced in the first pass; where a pixel has a single sample that ray is the sample.
 void render_block(const PixelJob&, const PixelWindow& block, Pass, Film&);

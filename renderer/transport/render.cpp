@@ -90,10 +90,10 @@ struct Job {
 };
 
 void render_tile(const Job& job, const PixelWindow& tile, Pass pass, Film& film) {
-  for (int y = tile.y0; y < tile.y1; y += block_side)
-    for (int x = tile.x0; x < tile.x1; x += block_side)
-      render_block(job.pixels, {x, y, std::min(x + block_side, tile.x1), std::min(y + block_side, tile.y1)}, pass,
-                   film);
+  const auto [width, height] = block_size(pass.count);
+  for (int y = tile.y0; y < tile.y1; y += height)
+    for (int x = tile.x0; x < tile.x1; x += width)
+      render_block(job.pixels, {x, y, std::min(x + width, tile.x1), std::min(y + height, tile.y1)}, pass, film);
 }
 
 template <class Visit>
@@ -124,10 +124,11 @@ void scout(const Job& job, const PixelWindow& window) {
   }
 }
 
-// 1, 1, 2, 4, 8, 16, 16, ... samples: pictures of a power of two, and never long without a look at the clock. Under a
-// time limit no more than should fit at the speed so far; 0 when not even one does.
+// 1, 3, 12, 16, 16, ... samples: pictures of a power of four, then never long without a look at the clock. Those of a
+// pass go together, which makes each cheaper. Under a time limit no more than should fit at the speed so far; 0 when
+// not even one does.
 int next_count(const Job& job, int done, double elapsed_s) {
-  int count = std::min(std::clamp(done, 1, 16), job.samples - done);
+  int count = std::min(std::clamp(3 * done, 1, 16), job.samples - done);
   if (!job.options.time_limit_s || done == 0) return count;
   const double left_s = *job.options.time_limit_s - elapsed_s;
   while (count > 0 && elapsed_s / done * count > left_s) count /= 2;
@@ -137,7 +138,7 @@ int next_count(const Job& job, int done, double elapsed_s) {
 // Finer surfaces save some part of the time of a sample and cost less than one: after the first sample, which found
 // most of what the camera sees, and twice more, for what longer paths have found.
 bool worth_refining(int done, int samples) {
-  return (done == 1 || done == 8 || done == 64) && samples - done >= std::max(2, done / 4);
+  return (done == 1 || done == 16 || done == 64) && samples - done >= std::max(2, done / 4);
 }
 
 void render_passes(const Job& job, Film& film, Meter& meter) {

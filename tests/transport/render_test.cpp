@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "field/math/elementary.h"
+#include "renderer/transport/pixel_block.h"
 #include "tests/transport/mock_surfaces.h"
 
 namespace marrow {
@@ -47,7 +48,7 @@ TEST(Render, BitsDoNotDependOnThreads) {
 // Blocks of pixels whose rays go together are cut by tiles.
 TEST(Render, BitsDoNotDependOnTiles) {
   const RenderScene scene = studio(37, 21);
-  for (const int samples : {1, 4}) {
+  for (const int samples : {1, 5, 16}) {
     const RenderSettings settings{.samples_per_pixel = samples};
     const Picture usual = picture_of(to_rows(render(scene, settings, {.tile_size = 16})));
     for (const int side : {1, 3, 7})
@@ -82,12 +83,23 @@ class CountingSurfaces final : public Surfaces {
 TEST(Render, RaysOfABlockOfPixelsGoTogether) {
   const CountingSurfaces counting(ball_on_floor);
   const RenderScene scene = studio(40, 10, counting);
-  render(scene, {.integrator = RenderSettings::Integrator::Direct, .samples_per_pixel = 3},
+  render(scene, {.integrator = RenderSettings::Integrator::Direct, .samples_per_pixel = 4},
          {.threads = 1, .tile_size = 32});
-  // A block of 32 columns and one of 8, three samples each
-  EXPECT_EQ(std::ranges::count(counting.together, 320u), 3);
-  EXPECT_EQ(std::ranges::count(counting.together, 80u), 3);
+  // The first sample: a block of 32 columns and one of 8
+  EXPECT_EQ(std::ranges::count(counting.together, 320u), 1);
+  EXPECT_EQ(std::ranges::count(counting.together, 80u), 1);
+  // Three more samples of each pixel: two blocks of 16 columns and one of 8
+  EXPECT_EQ(std::ranges::count(counting.together, 480u), 2);
+  EXPECT_EQ(std::ranges::count(counting.together, 240u), 1);
   EXPECT_GT(std::ranges::max(counting.shadow_rays), 100u);
+}
+
+TEST(Render, BlocksOfMoreSamplesHaveFewerPixels) {
+  for (int samples = 1; samples <= 16; ++samples) {
+    const auto [width, height] = block_size(samples);
+    EXPECT_GE(width * height * samples, block_side * block_side) << samples;
+    EXPECT_LT(width * height * samples, 2 * block_side * block_side) << samples;
+  }
 }
 
 // A program that embeds the renderer may have set another rounding, on which every sum depends.
