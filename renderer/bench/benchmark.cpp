@@ -119,15 +119,16 @@ class Measurement {
     add_racer(figures, std::move(engine));
   }
 
-  // What one more sample of each pixel costs: four samples less two, so that all that is done once cancels.
+  // What one more sample of each pixel costs: sixteen samples less four, so that all that is done once cancels. The
+  // twelve go together, in the third pass of render().
   Cost further_sample(const PreparedScene& ready) const {
     RenderSettings render_settings = ready.description.render;
     const auto film = [&](int samples) {
       render_settings.samples_per_pixel = samples;
       return cost_of([&] { render(ready.render_scene, render_settings, {.crop = {}, .threads = settings_.threads}); });
     };
-    const Cost two = film(2), four = film(4);
-    return {(four.wall_s - two.wall_s) / 2, (four.cpu_s - two.cpu_s) / 2};
+    const Cost few = film(4), many = film(16);
+    return {(many.wall_s - few.wall_s) / 12, (many.cpu_s - few.cpu_s) / 12};
   }
 
   // Evaluations are counted beside the race, because counting takes time.

@@ -19,8 +19,8 @@ RayCounts shaded_frame(const RayEngine&, const Workload&, const FrameSettings&);
 /// The hits of the rays through the pixels' middles, block by block.
 std::vector<EngineHit> hits_of_frame(const RayEngine&, const Workload&, const FrameSettings&);
 
-/// From each of the hits a path of at most `bounces` rays, each with the density of a diffuse surface; a path ends when
-/// it leaves the scene. The directions are a function of hit and bounce.
+/// From each of the hits four paths of at most `bounces` rays, each with the density of a diffuse surface; a path ends
+/// when it leaves the scene. The directions are a function of hit, path and bounce.
 RayCounts diffuse_paths(const RayEngine&, const std::vector<EngineHit>& from, int bounces, const FrameSettings&);
 
 }  // namespace marrow

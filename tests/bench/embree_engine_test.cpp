@@ -51,7 +51,8 @@ TEST(Frames, CountRays) {
   const auto hits = hits_of_frame(*engine, one_of_each(), settings);
   EXPECT_EQ(hits.size(), frame.hits);
   const RayCounts paths = diffuse_paths(*engine, hits, 4, settings);
-  EXPECT_GE(paths.rays, frame.hits);
+  EXPECT_GE(paths.rays, 4 * frame.hits);
+  EXPECT_LE(paths.rays, 16 * frame.hits);
   EXPECT_EQ(diffuse_paths(*engine, hits, 4, {64, 1}).rays, paths.rays);
 }
 
