@@ -156,6 +156,11 @@ struct CellRoots {
 /// Gaps along a ray shorter than this times the distance to the nearest source are not decided.
 inline constexpr float shortest_gap = 2e-5F;
 
+/// In the coordinates of a block.
+struct PlacesInLanes {
+  alignas(64) float at[3][lanes] = {};
+};
+
 /// Hits on the surface of one blend, a lane each, as PointField tells of them in the coordinates of their blocks; and
 /// where rays may leave from beside them.
 struct SurfaceLanes {
@@ -287,7 +292,8 @@ struct BlockKernels {
   /// first_root() for each ray in its cell, from `enter` to `exit`, where skeletons have no angle each, to the same
   /// bits.
   void (*roots_between)(const CellRays* cells, int count, const PacketView&, bool any, PacketMemory&, CellRoots&);
-  PointField (*point_field)(const FieldLevel&, int degree, const float point[3]);
+  /// At the first `count` places, which share a level.
+  void (*point_fields)(const FieldLevel&, int degree, const PlacesInLanes&, int count, PointField*);
   /// Finds `growth` and `step` of the first `count` lanes (B3 and B4 of tracing.md).
   void (*surface_starts)(const SurfaceRule&, int count, SurfaceLanes&);
   /// Through the slots of a set, in coordinates of the cube of 4 x 4 x 4 slots, [-1, 1]^3.

@@ -15,6 +15,7 @@ namespace {
 #include "field/trace/kernels/sums.h"
 #include "field/trace/kernels/levels.h"
 #include "field/trace/kernels/far_on_ray.h"
+#include "field/trace/kernels/sums_in_rays.h"
 #include "field/trace/kernels/packet_sums.h"
 #include "field/trace/kernels/iso.h"
 #include "field/trace/kernels/strands.h"
@@ -44,8 +45,8 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root,    enter_cell,     roots_between, point_field, surface_starts,
-                                        walk,          cube_bounds,    far_moments,   far_split,   octant_bounds,
+  static constexpr BlockKernels kernels{first_root,    enter_cell,     roots_between, point_fields, surface_starts,
+                                        walk,          cube_bounds,    far_moments,   far_split,    octant_bounds,
                                         strand_shares, strand_samples, add_strand};
   return kernels;
 }

@@ -1,5 +1,7 @@
 // Normals at hits, and points beside them from which rays can leave.
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <span>
 
@@ -53,12 +55,47 @@ struct Hit {
   const Block& block;
   const Vec3d& position;
 
-  Vec3d place() const { return (position - block.center()) / block.half(); }
   void find_start(const SurfaceLanes& found, std::size_t lane, SurfacePoint& out) const {
     const Vec3d growth{found.growth[0][lane], found.growth[1][lane], found.growth[2][lane]};
     out.normal = normalize(-growth);
     out.outside = position + out.normal * (block.half() * static_cast<double>(found.step[lane]));
   }
+};
+
+using PointFields = std::array<PointField, most_together>;
+
+// Those of some hits that lie in one block, which share its level, in its coordinates.
+struct HitsOfBlock {
+  PlacesInLanes places;
+  int count = 0;
+
+  // `lanes_left`: a bit for each of the hits that may be among them.
+  HitsOfBlock(const Block& block, std::span<const SurfaceQuery> hits, unsigned lanes_left) {
+    for (; lanes_left != 0; lanes_left &= lanes_left - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(lanes_left));
+      if (hits[lane].block == &block) add(lane, (hits[lane].position - block.center()) / block.half());
+    }
+  }
+
+  unsigned lanes_of() const { return lanes_of_; }
+  // Calls visit(i, lane, place).
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) visit(i, lane_[i], exact_[i]);
+  }
+
+ private:
+  void add(std::size_t lane, const Vec3d& x) {
+    const auto i = static_cast<std::size_t>(count++);
+    for (std::size_t k = 0; k < 3; ++k) places.at[k][i] = static_cast<float>(x[k]);
+    exact_[i] = x;
+    lane_[i] = lane;
+    lanes_of_ |= 1U << lane;
+  }
+
+  unsigned lanes_of_ = 0;
+  std::array<std::size_t, most_together> lane_;
+  std::array<Vec3d, most_together> exact_;
 };
 
 }  // namespace
@@ -80,17 +117,22 @@ void BlendTracer::surfaces_at(std::span<const SurfaceQuery> hits, std::span<Surf
     surfaces_at(hits.first(most_together), found);
   const SurfaceRule rule{state_->iso.view(), state_->iso.tables(), state_->field.degree};
   SurfaceLanes side_by_side;
-  for (std::size_t lane = 0; lane < hits.size(); ++lane) {
-    const Hit hit{*hits[lane].block, hits[lane].position};
-    const BlockLevel& fine = hit.block.fine();
-    const Vec3d x = hit.place();
-    const float place[3] = {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)};
-    const PointField f = state_->kernels.point_field(fine.level, rule.degree, place);
-    set(side_by_side, lane, f, fine);
-    found[lane].around = {};
-    if (!state_->range || hit.block.patches() != nullptr)
-      found[lane].around = {hit.block.view().owner, {place[0], place[1], place[2]}, f};
-    if (state_->range) set_share(side_by_side, lane, hit.block, x, f, rule.degree);
+  for (unsigned left = (1U << hits.size()) - 1; left != 0;) {
+    const Block& block = *hits[static_cast<std::size_t>(std::countr_zero(left))].block;
+    const HitsOfBlock here(block, hits, left);
+    left &= ~here.lanes_of();
+    const BlockLevel& fine = block.fine();
+    const bool knows_around = !state_->range || block.patches() != nullptr;
+    PointFields fields;
+    state_->kernels.point_fields(fine.level, rule.degree, here.places, here.count, fields.data());
+    here.for_each([&](std::size_t i, std::size_t lane, const Vec3d& x) {
+      set(side_by_side, lane, fields[i], fine);
+      FieldAround& around = found[lane].around;
+      around.block = knows_around ? block.view().owner : nullptr;
+      for (std::size_t k = 0; k < 3; ++k) around.place[k] = here.places.at[k][i];
+      around.field = fields[i];
+      if (state_->range) set_share(side_by_side, lane, block, x, fields[i], rule.degree);
+    });
   }
   state_->kernels.surface_starts(rule, static_cast<int>(hits.size()), side_by_side);
   for (std::size_t lane = 0; lane < hits.size(); ++lane)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <optional>
 #include <thread>
@@ -24,8 +25,10 @@ std::vector<Setting> settings() {
 }
 
 PointField field_of(const Stage& stage, const FieldLevel& level, const Vec3d& x) {
-  const float local[3] = {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)};
-  return stage.kernels.point_field(level, stage.field.degree, local);
+  const PlacesInLanes local{{{static_cast<float>(x.x)}, {static_cast<float>(x.y)}, {static_cast<float>(x.z)}}};
+  PointField found;
+  stage.kernels.point_fields(level, stage.field.degree, local, 1, &found);
+  return found;
 }
 
 struct Shares {
@@ -49,6 +52,30 @@ void compare(const Stage& stage, const PointField& found, const Vec3d& p, double
   ASSERT_LE(g_off, g_allowed) << "G=" << length(exact.si_gradient) << " d/half=" << d / half;
   shares.f = std::max(shares.f, f_off / f_allowed);
   shares.g = std::max(shares.g, g_off / g_allowed);
+}
+
+// In lanes or one by one: the same bits.
+TEST(Block, FieldsOfPlacesTogetherAreThoseOfEach) {
+  Random random(67);
+  for (const char* set : {"sse4", "avx2", "avx512"}) {
+    if (block_kernels(set) == nullptr) continue;  // not on this machine
+    for (const Setting& s : settings()) {
+      const Stage stage(random_scene(random, s, random.whole(2, 40)), set);
+      const Block block = stage.block(0);
+      for (const int count : {2, 9, 16}) {
+        PlacesInLanes places;
+        for (auto& of_axis : places.at)
+          for (float& x : of_axis) x = static_cast<float>(random.between(-1, 1));
+        std::array<PointField, lanes> together;
+        stage.kernels.point_fields(block.fine().level, s.degree, places, count, together.data());
+        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+          const Vec3d x{places.at[0][i], places.at[1][i], places.at[2][i]};
+          const PointField alone = field_of(stage, block.fine().level, x);
+          ASSERT_EQ(std::memcmp(&together[i], &alone, sizeof alone), 0) << set << " " << count << " " << i;
+        }
+      }
+    }
+  }
 }
 
 TEST(Block, LevelsAreWithinTheirStatedErrors) {

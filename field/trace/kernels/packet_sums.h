@@ -33,52 +33,6 @@ inline void find_columns_of(unsigned rays, V16 (&rows)[packet_lanes], PacketFloa
   find_columns(rows, columns);
 }
 
-// The twelve sums of add_sources() over one list, with a ray in each lane.
-template <int Exponent>
-class SumsInRays {
- public:
-  SumsInRays(const SourceList& list, int exponent, const PacketFloat (&at)[3], const PacketFloat (&direction)[3])
-      : first_(list.groups), groups_(list.count), exponent_(exponent), at_(at), direction_(direction) {
-    const float* const last = first_ + static_cast<long>(groups_ - 1) * floats_per_group;
-    while (in_last_ > 0 && is_unused(last + in_last_ - 1)) --in_last_;
-  }
-
-  void find(PacketFloat (&sums)[12]) const { sum_from(0, 1, sums); }
-
- private:
-  // As SourceGroups leaves lanes: without a field, and too far away to be the nearest.
-  static bool is_unused(const float* source) { return source[48] == 0.0F && source[0] == unused_place; }
-
-  // Over every stride-th lane of sources from the first one on, as lane_sums() does it.
-  void sum_from(int first, int stride, PacketFloat (&sums)[12]) const {
-    if (stride == lanes) return sum_lane(first, sums);
-    sum_from(first, 2 * stride, sums);
-    if (groups_ == 1 && first + stride >= in_last_) return;
-    PacketFloat others[12];
-    sum_from(first + stride, 2 * stride, others);
-    for (int i = 0; i < 11; ++i) sums[i] += others[i];
-    sums[11] = larger(sums[11], others[11]);
-  }
-
-  void sum_lane(int lane, PacketFloat (&sums)[12]) const {
-    PacketFloat a[12] = {};
-    const auto away = [&](const float* source) {
-      return Away(at_[0] - source[0], at_[1] - source[16], at_[2] - source[32]);
-    };
-    for_each_source(first_ + lane, groups_ - (lane >= in_last_), floats_per_group, away,
-                    [&](const float* source, const Away& d) {
-                      add_sources<Exponent>(source[48] - PacketFloat{}, source[64] - PacketFloat{}, exponent_, d,
-                                            direction_[0], direction_[1], direction_[2], a);
-                    });
-    __builtin_memcpy(sums, a, sizeof a);
-  }
-
-  const float* first_;
-  const int groups_, exponent_;
-  int in_last_ = lanes;  // sources of the last group
-  const PacketFloat (&at_)[3], (&direction_)[3];
-};
-
 struct PacketSummer {
   const PacketFloat (&at)[3];
   const PacketRays& rays;
@@ -95,7 +49,7 @@ struct PacketSummer {
     for (const RaysOfLevel& same : groups) {
       const SourceList sources = list(*same.level);
       if (sources.count == 0) continue;
-      if (is_faster_in_lanes(sources, same.lanes)) {
+      if (is_faster_in_lanes(sources, __builtin_popcount(same.lanes))) {
         in_lanes |= same.lanes;
       } else {
         in_rows |= same.lanes;
@@ -112,13 +66,6 @@ struct PacketSummer {
   }
 
  private:
-  // Counted in groups of sources: the sums of a ray take some four more, to be added up over lanes, those in lanes one
-  // for each source, and four.
-  static bool is_faster_in_lanes(const SourceList& sources, unsigned lanes_of) {
-    const int rays_of = __builtin_popcount(lanes_of) * (lanes / packet_lanes);
-    return rays_of * (2 * sources.count + 8) > 2 * lanes * sources.count + 8;
-  }
-
   template <int Exponent>
   V16 sums_of(int lane, const SourceList& sources, int exponent) const {
     // To subtract 0 changes nothing, so that no instruction does it.
@@ -137,7 +84,12 @@ struct PacketSummer {
   template <int Exponent>
   void find_in_lanes(const SourceList& sources, int exponent, unsigned lanes_of, PacketFloat (&columns)[lanes]) const {
     PacketFloat sums[12];
-    SumsInRays<Exponent>(sources, exponent, at, rays.direction).find(sums);
+    sums_in_rays(
+        sources, at,
+        [&](Native share, Native radius, const Away& d, PacketFloat(&a)[12]) {
+          add_sources<Exponent>(share, radius, exponent, d, rays.direction[0], rays.direction[1], rays.direction[2], a);
+        },
+        sums);
     const PacketInt which = mask_of(lanes_of);
     for (int i = 0; i < 11; ++i) assign(which, columns[i], sums[i]);
     assign(which, columns[lanes - 1], sums[11]);
