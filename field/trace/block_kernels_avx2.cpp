@@ -20,7 +20,7 @@ namespace {
 #include "field/trace/kernels/iso.h"
 #include "field/trace/kernels/strands.h"
 #include "field/trace/kernels/strand_samples.h"
-#include "field/trace/kernels/angle_rows.h"
+#include "field/trace/kernels/angle_place.h"
 #include "field/trace/kernels/share_patch.h"
 #include "field/trace/kernels/sample.h"
 #include "field/trace/kernels/varied_angle.h"

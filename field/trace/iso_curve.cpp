@@ -70,38 +70,8 @@ IsoCurve::IsoCurve(const Correction& correction, double least, double most) : le
       if (!(off > 0) || !std::isfinite(off)) continue;  // beyond the end of a table V_lower says no
       for (std::size_t row = k > 0 ? k - 1 : 0; row <= std::min(k + 2, count); ++row) rows_[row].lower_around(p, off);
     }
-  stride_ = std::ranges::max(rows_, {}, &IsoTable::size).size();
-  for (const IsoTable& row : rows_) {
-    const View& view = views_.emplace_back(row.view());
-    for (int i = 0; i < view.size; ++i) {
-      const int next = std::min(i + 1, view.size - 1);
-      steps_.insert(steps_.end(), {view.value[i], view.lower[i], view.value[next], view.lower[next]});
-    }
-    steps_.resize(views_.size() * 4 * static_cast<std::size_t>(stride_));
-    slopes_.insert(slopes_.end(), view.slope, view.slope + view.size);
-    slopes_.resize(views_.size() * static_cast<std::size_t>(stride_));
-    u_begin_.push_back(view.u_begin);
-    inverse_step_.push_back(view.inverse_step);
-    sin_theta_.push_back(view.sin_theta);
-    cos_theta_.push_back(view.cos_theta);
-    last_entry_.push_back(static_cast<float>(view.size - 1));
-  }
-  constexpr std::size_t entries = 16;
-  for (auto* of_rows : {&u_begin_, &inverse_step_, &sin_theta_, &cos_theta_, &last_entry_})
-    of_rows->resize(std::max(of_rows->size(), entries));
-}
-
-AngleTables IsoCurve::tables() const {
-  if (steps_.empty()) return {};
-  return {.steps = steps_.data(),
-          .slopes = slopes_.data(),
-          .u_begin = u_begin_.data(),
-          .inverse_step = inverse_step_.data(),
-          .sin_theta = sin_theta_.data(),
-          .cos_theta = cos_theta_.data(),
-          .last = last_entry_.data(),
-          .stride = stride_,
-          .count = static_cast<int>(views_.size())};
+  for (const IsoTable& row : rows_) views_.push_back(row.view());
+  angles_ = AngleCurves(correction, least, most);
 }
 
 bool IsoCurve::outside(double x_low, double x_high, double y_high) const {

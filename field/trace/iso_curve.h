@@ -7,20 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "field/trace/angle_tables.h"
 #include "field/trace/iso_table.h"
 
 namespace marrow {
-
-/// The tables of a range of angles, for equal steps of their share, one after the other, with what IsoTable::View tells
-/// of each. They have different numbers of entries.
-struct AngleTables {
-  const float* steps = nullptr;   ///< value, lower, and both of the next entry
-  const float* slopes = nullptr;  ///< IsoTable::View's
-  /// Of each table; there are at least 16 numbers.
-  const float *u_begin = nullptr, *inverse_step = nullptr, *sin_theta = nullptr, *cos_theta = nullptr;
-  const float* last = nullptr;  ///< the number of its last entry
-  int stride = 0, count = 0;    ///< entries from table to table; tables
-};
 
 class IsoCurve {
  public:
@@ -52,8 +42,8 @@ class IsoCurve {
   View view() const { return views_.front(); }
   /// Of all tables.
   std::span<const View> views() const { return views_; }
-  /// The same; none for one angle.
-  AngleTables tables() const;
+  /// Of the range; none for one angle.
+  AngleTables tables() const { return angles_.tables(); }
   double least() const { return least_; }
   double most() const { return most_; }
 
@@ -63,9 +53,7 @@ class IsoCurve {
   double least_, most_;
   std::vector<IsoTable> rows_;
   std::vector<View> views_;
-  // Of tables()
-  std::vector<float> steps_, slopes_, u_begin_, inverse_step_, sin_theta_, cos_theta_, last_entry_;
-  int stride_ = 0;
+  AngleCurves angles_;
 };
 
 }  // namespace marrow

@@ -26,6 +26,15 @@ inline V4 load4(const float* p) {
   return v;
 }
 
+#if defined(__AVX__)
+using V8 = float __attribute__((vector_size(32)));
+inline V8 load8(const float* p) {
+  V8 v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
+}
+#endif
+
 inline Native load_native(const float* p) {
   return *static_cast<const Native*>(__builtin_assume_aligned(p, sizeof(Native)));
 }

@@ -13,23 +13,16 @@ struct PatchedAngle {
   // As Marcher::judge(), with the angle of the place.
   void judge(Sample& p, F y, F dy) const {
     p.share = run.at(p.t);
-    const AngleRows<F> rows(block.tables, p.share.c[0]);
-    F share_weight{};
-    p.curve = p.v = p.x_weight = p.y_weight = p.v_slope = F{};
-    for (int i = 0; i < 4; ++i) {
-      const RowPlace<F> row = rows.place(i, p.s.f, y);
-      const F w = rows.weight[i], value = row.value(),
-              slope = select(row.at > 0.0F, row.slope() * row.inverse_step, F{});
-      p.curve += w * value;
-      p.v += w * row.v;
-      p.x_weight += w * (row.sine + slope * row.cosine);
-      p.y_weight += w * (row.cosine - slope * row.sine);
-      share_weight += rows.slope[i] * (value - row.v);
-      p.v_slope += w * (p.s.df * row.sine + dy * row.cosine) + rows.slope[i] * p.share.c[1] * row.v;
-    }
-    p.slope = share_weight * p.share.c[1] - p.x_weight * p.s.df - p.y_weight * dy;
+    const AnglePlace<F> place(block.tables, p.share.c[0], p.s.f, y);
+    const F slope = place.slope(), growth = place.growth(block.tables);
+    p.curve = place.value();
+    p.v = place.v;
+    p.x_weight = place.sine + slope * place.cosine;
+    p.y_weight = place.cosine - slope * place.sine;
+    p.v_slope = p.s.df * place.sine + dy * place.cosine;
+    p.slope = growth * p.share.c[1] - p.x_weight * p.s.df - p.y_weight * dy;
     p.nominal = p.curve - p.v;
-    p.residual_bend = abs_of(share_weight * p.share.c[2]);
+    p.residual_bend = abs_of(growth * p.share.c[2]);
     p.s.f += level.f_error();
     p.sure = !Mask{};
     p.residual = margin_within(p, p.s.f, p.y, F{}, !Mask{});
@@ -53,10 +46,7 @@ struct PatchedAngle {
     const Mask right = right_of_reference(raised_x, raised_y, block.degree);
     const Range shares = shares_until(p, h, all_lanes<F>(rounded));
     const F worst = select(right, shares.high, shares.low);
-    const Mask rough = level.f_error() > 0.0F, between = asked & !rough;
-    F margin{};
-    if (any(rough)) margin = margin_of_next_row(block.tables, right, worst, raised_x, raised_y);
-    if (any(between)) margin = select(rough, margin, AngleRows<F>(block.tables, worst).margin(raised_x, raised_y));
+    F margin = AnglePlace<F>(block.tables, worst, raised_x, raised_y).margin();
     const Mask as_summed = asked & !p.sure;
     if (any(as_summed)) margin = select(as_summed, nominal_within(p, x, y, h), margin);
     return margin;
@@ -64,12 +54,12 @@ struct PatchedAngle {
   F nominal_within(const Sample& p, F x, F y, F h) const {
     const Range shares = shares_until(p, h, F{});
     const Mask right = right_of_reference(x, y, block.degree);
-    return AngleRows<F>(block.tables, select(right, shares.high, shares.low)).nominal_margin(x, y);
+    return AnglePlace<F>(block.tables, select(right, shares.high, shares.low), x, y).nominal_margin();
   }
   Mask inside_within(const Sample& p, F x, F y, F h) const {
     const Range shares = shares_until(p, h, F{});
     const Mask right = right_of_reference(x, y, block.degree);
     return (x > block.iso.critical) |
-           AngleRows<F>(block.tables, select(right, shares.low, shares.high)).nominally_inside(x, y);
+           (AnglePlace<F>(block.tables, select(right, shares.low, shares.high), x, y).straight_margin() < 0.0F);
   }
 };

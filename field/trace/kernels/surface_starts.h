@@ -90,16 +90,10 @@ class SurfaceStart {
       const F slope = CurvePlace<F>(rule_.iso, turned_u(rule_.iso, x, y)).within(rule_.iso.slope);
       return {rule_.iso.sin_theta + slope * rule_.iso.cos_theta, rule_.iso.cos_theta - slope * rule_.iso.sin_theta};
     } else {
-      const AngleRows<F> rows(rule_.tables, from(hits_.share));
-      Weights sum{};
-      for (int i = 0; i < 4; ++i) {
-        const RowPlace<F> row = rows.place(i, x, y);
-        const F slope = row.exact_slope(rule_.tables);
-        sum.x += rows.weight[i] * (row.sine + slope * row.cosine);
-        sum.y += rows.weight[i] * (row.cosine - slope * row.sine);
-        of_share -= rows.slope[i] * (row.value() - row.v);
-      }
-      return sum;
+      const AnglePlace<F> place(rule_.tables, from(hits_.share), x, y);
+      const F slope = place.exact_slope(rule_.tables);
+      of_share = -place.growth(rule_.tables);
+      return {place.sine + slope * place.cosine, place.cosine - slope * place.sine};
     }
   }
 
@@ -122,7 +116,7 @@ class SurfaceStart {
     return min_of(right, margin_at(rule_.iso, max_of((at - bend - f_error_) / raise_, 0.0F), y));
   }
 
-  // For all shares that alpha may have on the step: C is largest at one end of them, see angle_rows.h.
+  // For all shares that alpha may have on the step: C is largest at one end of them, see angle_place.h.
   F margin_of_shares(F step, F x, F y) const {
     const Mask upward = right_of_reference(x, y, rule_.degree);
     const F left = 1.0F - from(hits_.share_growth) * step / nearest_, bend = from(hits_.share_bend) * step * step;
@@ -131,7 +125,7 @@ class SurfaceStart {
         select(upward, max_of(move + bend, 0.0F) + error, min_of(move - bend, 0.0F) - error) / max_of(left, 0.1F);
     const Mask known = (left > 0.1F) & (bend < infinity);
     const F any_share = select(upward, all_lanes<F>(1), F{});
-    return AngleRows<F>(rule_.tables, select(known, from(hits_.share) + change, any_share)).margin(x, y);
+    return AnglePlace<F>(rule_.tables, select(known, from(hits_.share) + change, any_share), x, y).margin();
   }
 
   const SurfaceRule& rule_;

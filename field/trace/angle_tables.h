@@ -1,0 +1,41 @@
+// Where the corrected field is 1 for each angle of a range: on each step of the range the curve of iso_table.h, in
+// coordinates that are turned by one angle for the whole step, with entries that are quadratic in the angle.
+#pragma once
+
+#include <vector>
+
+namespace marrow {
+
+class Correction;
+
+/// The share of the range is s + 1/2 steps beyond the beginning of its step, -1/2 <= s <= 1/2. What depends on s is
+/// p[0] + s (p[1] + s p[2]).
+struct AngleTables {
+  /// p of V at the entries, and how far below V the curve may be there and up to the entries beside it.
+  const float* entries = nullptr;
+  const float* slopes = nullptr;  ///< p of V', from the exact partials of C, and 0
+  /// Of each step; there are at least 32 numbers. The first entry is at u = begin.
+  const float *begin[3] = {}, *inverse_step[3] = {};
+  const float *sin_theta = nullptr, *cos_theta = nullptr;
+  const float* last = nullptr;  ///< the number of its last entry
+  int stride = 0, count = 0;    ///< entries from step to step; steps
+};
+
+class AngleCurves {
+ public:
+  AngleCurves() = default;
+  /// 0 <= least < most; degree, cavity and projection are those of the correction.
+  AngleCurves(const Correction&, double least, double most);
+  AngleCurves(AngleCurves&&) = default;  // tables stay where they are
+  AngleCurves& operator=(AngleCurves&&) = default;
+
+  /// None where there is no range.
+  AngleTables tables() const;
+
+ private:
+  std::vector<float> entries_, slopes_;
+  std::vector<float> of_steps_[9];
+  int stride_ = 0, count_ = 0;
+};
+
+}  // namespace marrow
