@@ -59,10 +59,15 @@ struct FieldLevel {
 /// half, its coefficients in the order of far_field.h. It is the share that is traced; see share_patch.h.
 struct alignas(64) SharePatch {
   static constexpr int degree = 4, coefficients = 35;
-  float coefficient[coefficients] = {};
+  // What is asked most is in one cache line.
+  int layers_log2 = 2;   ///< the part is so many of the eight layers of slots wide
+  bool divided = false;  ///< there are smaller parts, which are more exact
+  float level = 0;       ///< in the part it is within `bent` of level + slope . (x - center)
+  float slope[3] = {0, 0, 0}, bent = 0;
   float center[3] = {0, 0, 0}, inverse_half = 1;
-  int layers_log2 = 2;  ///< the part is so many of the eight layers of slots wide
-  float error = 0;      ///< what it may be off from the exact share: an estimate
+  float error = 0;  ///< what it may be off from the exact share: an estimate
+  float bend = 0;   ///< half of its second derivative along any line is at most this
+  float coefficient[coefficients] = {};
 };
 inline constexpr int floats_per_patch = sizeof(SharePatch) / sizeof(float);
 

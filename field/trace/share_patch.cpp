@@ -131,6 +131,79 @@ double fit_patch(const Data& data, SharePatch& patch) {
   return largest;
 }
 
+// Bernstein's coefficients of the powers of z = 2 x - 1, 0 <= x <= 1: those of z^a are
+// sum_j (-1)^(a-j) 2^j binom(a, j) binom(k, j) / binom(degree, j).
+using OfPowers = std::array<std::array<double, SharePatch::degree + 1>, SharePatch::degree + 1>;
+OfPowers bernstein_of_powers() {
+  constexpr std::size_t n = SharePatch::degree;
+  const auto choose = [](std::size_t m, std::size_t k) {
+    double found = 1;
+    for (std::size_t i = 0; i < k; ++i) found = found * static_cast<double>(m - i) / static_cast<double>(i + 1);
+    return found;
+  };
+  OfPowers made{};
+  for (std::size_t a = 0; a <= n; ++a)
+    for (std::size_t k = 0; k <= n; ++k)
+      for (std::size_t j = 0; j <= std::min(a, k); ++j)
+        made[a][k] +=
+            ((a - j) % 2 != 0 ? -1 : 1) * std::ldexp(choose(a, j) * choose(k, j) / choose(n, j), static_cast<int>(j));
+  return made;
+}
+
+// What lies beside the line: all terms above the first degree are between the least and the largest of their
+// coefficients by Bernstein's polynomials.
+void find_line(SharePatch& patch) {
+  static const OfPowers of_powers = bernstein_of_powers();
+  const auto power = [](int exponent, std::size_t k) { return of_powers[static_cast<std::size_t>(exponent)][k]; };
+  double low = 0, high = 0;
+  for (std::size_t x = 0; x <= SharePatch::degree; ++x)
+    for (std::size_t y = 0; y <= SharePatch::degree; ++y)
+      for (std::size_t z = 0; z <= SharePatch::degree; ++z) {
+        double sum = 0;
+        for (std::size_t m = 0; m < coefficient_count; ++m) {
+          const Monomial& p = monomials[m];
+          if (p.degree() > 1)
+            sum += static_cast<double>(patch.coefficient[m]) * power(p.a, x) * power(p.b, y) * power(p.c, z);
+        }
+        low = std::min(low, sum);
+        high = std::max(high, sum);
+      }
+  double level = 0.5 * (low + high), bend = 0;
+  for (std::size_t m = 0; m < coefficient_count; ++m) {
+    const Monomial& p = monomials[m];
+    const auto c = static_cast<double>(patch.coefficient[m]), d = static_cast<double>(p.degree());
+    if (p.degree() == 0) level += c;
+    if (p.degree() == 1) patch.slope[p.a > 0 ? 0 : p.b > 0 ? 1 : 2] = patch.coefficient[m] * patch.inverse_half;
+    // Of a monomial of degree d where |z| <= 1 along each axis.
+    bend += 0.5 * std::fabs(c) * d * d;
+  }
+  constexpr double rounding = 1e-6;
+  patch.level = static_cast<float>(level);
+  patch.bent = static_cast<float>(0.5 * (high - low) + rounding);
+  patch.bend = static_cast<float>(bend * (1 + rounding)) * patch.inverse_half * patch.inverse_half;
+}
+
+// A monomial as z[axis] times one before it; its exponents, and the monomials with one factor less.
+struct Factors {
+  std::size_t axis, without[3];
+  double exponent[3];
+};
+std::vector<Factors> factors_of_monomials() {
+  std::vector<Factors> all;
+  for (std::size_t m = 0; m < coefficient_count; ++m) {
+    const int of[3] = {monomials[m].a, monomials[m].b, monomials[m].c};
+    Factors f{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      f.exponent[k] = of[k];
+      if (of[k] == 0) continue;
+      f.axis = k;
+      f.without[k] = monomial_index(of[0] - (k == 0), of[1] - (k == 1), of[2] - (k == 2));
+    }
+    all.push_back(f);
+  }
+  return all;
+}
+
 }  // namespace
 
 std::unique_ptr<const SharePatches::Part> SharePatches::make(const BlockKernels& kernels, int degree,
@@ -145,8 +218,10 @@ std::unique_ptr<const SharePatches::Part> SharePatches::make(const BlockKernels&
     patch.center[k] = (static_cast<float>(layer[k] >> layers_log2) + 0.5F) * 0.25F * static_cast<float>(width) - 1;
   const double residual = fit_patch(data_of(kernels, degree, strands.level, patch), patch);
   patch.error = static_cast<float>(strands.angle_error + 2 * residual);  // it is off by more between places
+  find_line(patch);
   count_.fetch_add(1, std::memory_order_relaxed);
   if (layers_log2 > 0 && residual > largest_residual) {
+    patch.divided = true;
     part->parts = std::make_unique<const Eight>();
     return part;
   }
@@ -157,21 +232,21 @@ std::unique_ptr<const SharePatches::Part> SharePatches::make(const BlockKernels&
 
 ShareAt share_at(const SharePatch& patch, const Vec3d& at) {
   const double scale = static_cast<double>(patch.inverse_half);
-  Vec3d z;
+  double z[3];
   for (std::size_t k = 0; k < 3; ++k) z[k] = (at[k] - static_cast<double>(patch.center[k])) * scale;
-  const Monomials here(z);
+  static const std::vector<Factors> factors = factors_of_monomials();
+  double value[coefficient_count] = {1};
   ShareAt out;
-  double bend = 0;
-  for (std::size_t m = 0; m < coefficient_count; ++m) {
+  out.share = static_cast<double>(patch.coefficient[0]);
+  for (std::size_t m = 1; m < coefficient_count; ++m) {
+    const Factors& f = factors[m];
+    value[m] = value[f.without[f.axis]] * z[f.axis];
     const auto c = static_cast<double>(patch.coefficient[m]);
-    out.share += c * here.value(monomials[m]);
-    for (std::size_t k = 0; k < 3; ++k) out.gradient[k] += c * here.slope(monomials[m], k);
-    const double d = monomials[m].degree();
-    // Half of the second derivative along a unit vector, of a monomial of degree d where |z| <= 1 along each axis.
-    bend += 0.5 * std::fabs(c) * d * d;
+    out.share += c * value[m];
+    for (std::size_t k = 0; k < 3; ++k) out.gradient[k] += c * f.exponent[k] * value[f.without[k]];
   }
   out.gradient = out.gradient * scale;
-  out.bend = bend * scale * scale;
+  out.bend = static_cast<double>(patch.bend);
   out.error = static_cast<double>(patch.error);
   if (out.share >= 0 && out.share <= 1) return out;
   out.share = std::clamp(out.share, 0.0, 1.0);

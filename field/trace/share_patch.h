@@ -1,9 +1,9 @@
 // The share of the range of angles in the parts of a block, where directions of strands give it.
 //
 // What strands.h tells of a place is fitted by polynomials, and these are what is traced: their bounds along a ray are
-// exact, they cost little, and the coarse level can use them as well. The parts are octants of the block, or octants of
-// those down to its slots where the fit is not good enough; each is made when the first ray comes by, and is a function
-// of the block alone.
+// exact, they cost little, and the coarse level can use lines beside them. The parts are octants of the block, or
+// octants of those down to its slots where the fit is not good enough; each is made when the first ray comes by, and is
+// a function of the block alone.
 #pragma once
 
 #include <array>
@@ -63,7 +63,7 @@ const SharePatch& SharePatches::at(const int (&layer)[3], const BlockKernels& ke
     const int octant = (layer[0] >> log2 & 1) | (layer[1] >> log2 & 1) << 1 | (layer[2] >> log2 & 1) << 2;
     const Part& part =
         (*eight)[static_cast<std::size_t>(octant)].get([&] { return make(kernels, degree, strands(), layer, log2); });
-    if (part.parts == nullptr) return part.patch;
+    if (!part.patch.divided) return part.patch;
     eight = part.parts.get();
   }
 }

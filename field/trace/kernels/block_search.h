@@ -1,25 +1,6 @@
 // A packet of rays, each in its block: those that need the same go together, whatever their blocks, as many at a time
 // as a register has lanes. Part of block_kernels_<set>.cpp.
 
-// The angle on the runs of the rays in the lanes.
-template <Angle Rule>
-struct AngleOnRuns {
-  AngleSource<Rule, PacketFloat> source;
-  void load(const Lanes&, PacketInt, const BlockRays&) {}
-};
-template <>
-struct AngleOnRuns<Angle::Patched> {
-  ShareOnRun<PacketFloat> run;
-  AngleSource<Angle::Patched, PacketFloat> source{run};
-  AngleOnRuns() = default;
-  AngleOnRuns(const AngleOnRuns&) = delete;
-  AngleOnRuns& operator=(const AngleOnRuns&) = delete;
-  void load(const Lanes& at, PacketInt which, const BlockRays& r) {
-    at.load(which, r.begin, run.from);
-    for (int i = 0; i <= SharePatch::degree; ++i) at.load(which, r.share[i], run.way.c[i]);
-  }
-};
-
 template <Angle Rule>
 class BlockSearch {
  public:
@@ -53,12 +34,15 @@ class BlockSearch {
     while (!open.empty()) {
       surely_inside_ = {};
       const LaneSet near = in_levels<&BlockView::coarse>(open, [&](const LaneSet& rays) { return approach_all(rays); });
+      if constexpr (Rule == Angle::Patched) find_shares(cells_, near, r);
       const LaneSet met =
           surely_inside_ | in_levels<&BlockView::fine>(near, [&](const LaneSet& rays) { return decide_all(rays); });
       r.hit |= met;
       find_sides(met & ~r.begins_outside);
       open &= ~met;
-      open = next_runs(open);
+      LaneSet in_next_patch;
+      if constexpr (Rule == Angle::Patched) in_next_patch = go_on_behind_patches(near & open, r);
+      open = in_next_patch | next_runs(open & ~in_next_patch);
     }
   }
 
@@ -79,13 +63,6 @@ class BlockSearch {
   };
 
   static void store(PacketFloat v, float* to) { __builtin_memcpy(to, &v, sizeof v); }
-  void load_rays(const Lanes& at, PacketInt which, PacketRays& rays) const {
-    for (int k = 0; k < 3; ++k) {
-      at.load(which, rays_->origin[k], rays.origin[k]);
-      at.load(which, rays_->direction[k], rays.direction[k]);
-    }
-  }
-
   // search(rays), of as many of the rays at a time as have levels that stay good together; joins what it returns.
   template <const FieldLevel& (BlockView::*Make)() const, class Find>
   LaneSet in_levels(LaneSet rays, const Find& search) {
@@ -104,7 +81,7 @@ class BlockSearch {
   // Those that wait, in free lanes.
   PacketInt seat(Lanes& at, LaneSet& waiting, PacketRays& rays, LevelOf<PacketFloat>& level) const {
     const PacketInt seated = at.seat(waiting);
-    load_rays(at, seated, rays);
+    load_rays(*rays_, at, seated, rays);
     at.for_each(seated, [&](int lane, int ray) { level.set(lane, level_of(ray), rays_->cell[ray]); });
     return seated;
   }
@@ -164,10 +141,9 @@ class BlockSearch {
     return rays;
   }
 
-  // Of runs that were found now; others keep theirs, as their patches do.
-  void store_shares(Runs<Rule, PacketFloat>& runs, const PacketRays& rays, PacketFloat begin, int first) {
-    const ShareOnRun<PacketFloat> share(runs.patches, rays, begin);
-    for (int i = 0; i <= SharePatch::degree; ++i) store(share.way.c[i], rays_->share[i] + first);
+  ShareLine<PacketFloat> line_of_group(int first) const {
+    const auto number = [&](int k) { return load_native(rays_->line[k] + first); };
+    return {number(0), number(1), number(2), number(3)};
   }
 
   void start_runs(const LaneSet& open) {
@@ -186,12 +162,16 @@ class BlockSearch {
   LaneSet next_runs(const LaneSet& open) {
     LaneSet found;
     open.for_each_group<packet_lanes>([&](int first) {
-      RunsOfGroup& runs = own_->runs[first / packet_lanes];
+      const PacketInt asked = mask_of(open.group<packet_lanes>(first));
       Run<PacketFloat> run{load_native(rays_->begin + first), load_native(rays_->end + first)};
-      found.add_group(first, lane_bits(runs.next(mask_of(open.group<packet_lanes>(first)), run)));
+      if constexpr (Rule == Angle::Patched) run.share = line_of_group(first);
+      found.add_group(first, lane_bits(own_->runs[first / packet_lanes].next(rays_of_group(first), asked, run)));
       store(run.begin, rays_->begin + first);
       store(run.end, rays_->end + first);
-      if constexpr (Rule == Angle::Patched) store_shares(runs, rays_of_group(first), run.begin, first);
+      if constexpr (Rule == Angle::Patched) {
+        const PacketFloat line[4] = {run.share.at, run.share.slope, run.share.low, run.share.high};
+        for (int k = 0; k < 4; ++k) store(line[k], rays_->line[k] + first);
+      }
     });
     return found;
   }
@@ -210,7 +190,7 @@ class BlockSearch {
     for (;;) {
       if (!waiting.empty()) {
         const PacketInt seated = seat(at, waiting, rays, level);
-        angle.load(at, seated, r);
+        angle.load_run(at, seated, r);
         const PacketFloat begin = at.load(r.begin), end = at.load(r.end);
         search.restart(seated, begin, end);
         march.evaluations = select(seated, PacketInt{}, march.evaluations);
@@ -224,7 +204,7 @@ class BlockSearch {
       if (!any(ended)) continue;
       const PacketInt now_near = ended & approach.near, inside = ended & approach.surely_inside;
       at.store(now_near, r.front, search.front);
-      at.store(now_near, r.guess, min_of(max_of(approach.guess, search.front), search.end));
+      at.store(now_near, r.guess, approach.guess);
       at.store(inside, r.t, search.inside.t);
       at.add(ended, r.evaluations, march.evaluations);
       at.add_to(r.begins_outside, ended & search.have_last);
@@ -248,9 +228,10 @@ class BlockSearch {
     for (;;) {
       if (!waiting.empty()) {
         const PacketInt seated = seat(at, waiting, rays, level);
-        angle.load(at, seated, r);
-        search.restart(seated, at.load(r.front), at.load(r.end));
-        at.load(seated, r.guess, decision.guess);
+        angle.load_share(at, seated, r);
+        const PacketFloat front = at.load(r.front), end = at.load(Rule == Angle::Patched ? r.fine_end : r.end);
+        search.restart(seated, front, end);
+        decision.guess = select(seated, min_of(max_of(at.load(r.guess), front), end), decision.guess);
         decision.samples = select(seated, PacketInt{}, decision.samples);
         decision.hit = decision.hit & !seated;
       }
@@ -277,13 +258,8 @@ class BlockSearch {
         ray.origin[k] = r.origin[k][lane];
         ray.direction[k] = r.direction[k][lane];
       }
-      AngleOf<Rule, float> angle;
-      if constexpr (Rule == Angle::Patched) {
-        angle.run.from = r.begin[lane];
-        for (int i = 0; i <= SharePatch::degree; ++i) angle.run.way.c[i] = r.share[i][lane];
-      }
       const BlockView& block = *cells_[r.cell[lane]].block;
-      if (is_inside<Rule>(block, ray, r.begin[lane], angle.source)) r.enters_inside.add(lane);
+      if (is_inside<Rule>(block, ray, r.begin[lane])) r.enters_inside.add(lane);
     });
   }
 

@@ -8,26 +8,32 @@ struct QueryOf {
   MaskOf<F> from_surface, from_outside;
 };
 
-// What gives the angle on a run, where it comes from.
+// What gives the angle on a stretch of a ray.
 template <Angle Rule, class F>
 struct AngleOf {
   AngleSource<Rule, F> source;
+  F end = all_lanes<F>(infinity);  // up to where
+
+  // To find where the surface may be on a run: all that it may be there.
+  explicit AngleOf(const Run<F>&) {}
+  // From t on, of the field that is traced.
+  AngleOf(const BlocksOf<F>&, const RayOf<F>&, F, MaskOf<F>) {}
 };
 template <class F>
 struct AngleOf<Angle::Patched, F> {
-  ShareOnRun<F> run;
-  AngleSource<Angle::Patched, F> source{run};
-  AngleOf() = default;
-  AngleOf(Patches<F>& patches, const RayOf<F>& ray, F t) : run(patches, ray, t) {}
+  ShareOnRun<F> share;
+  F end = all_lanes<F>(infinity);
+  AngleSource<Angle::Patched, F> source{share};
+
+  explicit AngleOf(const Run<F>& run) : share(run.share) {}
+  AngleOf(const BlocksOf<F>& blocks, const RayOf<F>& ray, F t, MaskOf<F> rays) {
+    const ShareInPatch<F> here(blocks, ray, t, rays);
+    share = here.share;
+    end = here.end;
+  }
   AngleOf(const AngleOf&) = delete;
   AngleOf& operator=(const AngleOf&) = delete;
 };
-
-template <Angle Rule, class F>
-inline AngleOf<Rule, F> angle_from(Patches<F>& patches, const RayOf<F>& ray, F t) {
-  if constexpr (Rule == Angle::Patched) return {patches, ray, t};
-  else return {};
-}
 
 // Until it ends.
 template <Angle Rule>
@@ -41,21 +47,25 @@ inline RootOf<float> decide(Search<Rule>& search, float guess, bool any_root) {
   return root;
 }
 
-// The coarse level finds where to look, the fine level decides.
+// The coarse level finds where to look, the fine level decides. Where patches give the angle that is as far as a patch
+// goes: then run.begin is where to go on.
 template <Angle Rule>
-inline RootOf<float> root_in(const BlockView& block, const LocalRay& ray, const Run<float>& run,
-                             const AngleSource<Rule, float>& angle, bool any_root) {
+inline RootOf<float> root_in(const BlockView& block, const LocalRay& ray, Run<float>& run, bool any_root) {
   RootOf<float> root;
   const LevelOf<float> coarse(block.coarse());
-  Marcher<Rule> march(block, coarse, ray, angle);
+  const AngleOf<Rule, float> any_angle(run);
+  Marcher<Rule> march(block, coarse, ray, any_angle.source);
   Search<Rule> search(march, run.begin, run.end);
   Approach<Rule> approach(search, any_root);
   while (approach.step(true)) {}
+  run.begin = run.end;
   if (approach.near) {
+    const AngleOf<Rule, float> angle(BlocksOf<float>{&block}, ray, search.front, true);
+    run.begin = min_of(angle.end, run.end);
     const LevelOf<float> exact(block.fine());
-    Marcher<Rule> fine(block, exact, ray, angle);
-    Search<Rule> close(fine, search.front, run.end);
-    root = decide(close, min_of(max_of(approach.guess, search.front), run.end), any_root);
+    Marcher<Rule> fine(block, exact, ray, angle.source);
+    Search<Rule> close(fine, search.front, run.begin);
+    root = decide(close, min_of(max_of(approach.guess, search.front), run.begin), any_root);
     root.evaluations = fine.evaluations;
     root.begins_outside = close.have_last;
   } else if (approach.surely_inside) {
@@ -70,15 +80,16 @@ inline RootOf<float> root_in(const BlockView& block, const LocalRay& ray, const 
 // Where a ray leaves that is inside at t0. What lies behind the run takes the ray to be outside already where it leaves
 // at the very end: the search goes a few of the shortest gaps beyond it.
 template <Angle Rule>
-inline RootOf<float> exit_in(const BlockView& block, const LocalRay& ray, const Run<float>& run,
-                             const AngleSource<Rule, float>& angle) {
+inline RootOf<float> exit_in(const BlockView& block, const LocalRay& ray, Run<float>& run) {
   constexpr float gaps_beyond = 4;
   const LevelOf<float> fine(block.fine());
-  Marcher<Rule> march(block, fine, ray, angle);
+  const AngleOf<Rule, float> angle(BlocksOf<float>{&block}, ray, run.begin, true);
+  Marcher<Rule> march(block, fine, ray, angle.source);
   march.exits = true;
   const SampleOf<Rule> first = march.sample(run.begin, true);
-  const float distance_at_end = first.distance + (run.end - run.begin);
-  Search<Rule> search(march, run.begin, run.end + gaps_beyond * shortest_gap * distance_at_end);
+  const float end = min_of(angle.end, run.end), distance_at_end = first.distance + (end - run.begin);
+  Search<Rule> search(march, run.begin, end + gaps_beyond * shortest_gap * distance_at_end);
+  run.begin = end;
   search.record(true, first);
   RootOf<float> root;
   if (!search.missed()) root = decide(search, search.guess(), false);
@@ -93,14 +104,15 @@ inline constexpr float clearly_inside = 5e-6F;
 // Whether the ray is inside at t, where a run begins, by the coarse level where that can tell. Where it is hardly so
 // the exact field tells how the ray began.
 template <Angle Rule>
-inline bool is_inside(const BlockView& block, const LocalRay& ray, float t, const AngleSource<Rule, float>& angle) {
+inline bool is_inside(const BlockView& block, const LocalRay& ray, float t) {
+  const AngleOf<Rule, float> angle(BlocksOf<float>{&block}, ray, t, true);
   const LevelOf<float> coarse(block.coarse());
-  Marcher<Rule> rough(block, coarse, ray, angle);
+  Marcher<Rule> rough(block, coarse, ray, angle.source);
   const SampleOf<Rule> p = rough.sample(t, true);
   if (p.residual > 0) return false;
   if (p.nominal < 0 && rough.inside_at(p, 0)) return true;
   const LevelOf<float> fine(block.fine());
-  Marcher<Rule> march(block, fine, ray, angle);
+  Marcher<Rule> march(block, fine, ray, angle.source);
   return march.sample(t, true).nominal < 0;
 }
 
@@ -111,16 +123,8 @@ inline MaskOf<F> leave_surface(const BlockView& block, const BlocksOf<F>& blocks
                                const RayOf<F>& ray, const AroundOf<F>& around, const QueryOf<F>& query, MaskOf<F> rays,
                                RootOf<F>& root, F& front) {
   using Mask = MaskOf<F>;
-  Patches<F> patches;
-  F end = query.t1;
-  if constexpr (Rule == Angle::Patched) {
-    const IntOf<F> layer[3] = {layer_of(ray.origin[0] + ray.direction[0] * query.t0),
-                               layer_of(ray.origin[1] + ray.direction[1] * query.t0),
-                               layer_of(ray.origin[2] + ray.direction[2] * query.t0)};
-    patches.find(blocks, rays, layer);
-    end = min_of(end, max_of(query.t0, end_of_patch(patches, ray)));
-  }
-  const AngleOf<Rule, F> angle = angle_from<Rule>(patches, ray, query.t0);
+  const AngleOf<Rule, F> angle(blocks, ray, query.t0, rays);
+  const F end = min_of(query.t1, angle.end);
   Marcher<Rule, F> march(block, fine, ray, angle.source);
   Mask departed{};
   if constexpr (Rule != Angle::Mean) departed = depart(march, ray, around, query.t0, end, rays, front);
@@ -154,18 +158,17 @@ inline RootOf<float> first_root_of(const BlockView& block, const LocalRay& ray, 
   const BlocksOf<float> itself{&block};
   Runs<Rule, float> runs(itself, SlotBits<float>(itself), ray, front, query.t1);
   Run<float> run;
-  while (!root.hit && runs.next(true, run)) {
-    const AngleOf<Rule, float> angle = angle_from<Rule>(runs.patches, ray, run.begin);
-    const RootOf<float> found = query.leaving ? exit_in<Rule>(block, ray, run, angle.source)
-                                              : root_in<Rule>(block, ray, run, angle.source, query.any);
+  while (!root.hit && (run.begin < run.end || runs.next(ray, true, run))) {
+    const float begin = run.begin;
+    const RootOf<float> found =
+        query.leaving ? exit_in<Rule>(block, ray, run) : root_in<Rule>(block, ray, run, query.any);
     root.hit = found.hit;
     if (found.hit) root.t = found.t;
     root.undecided = min_of(root.undecided, found.undecided);
-    if (root.evaluations == 0) root.searched_from = run.begin;
+    if (root.evaluations == 0) root.searched_from = begin;
     root.evaluations += found.evaluations;
     root.begins_outside |= found.begins_outside;
-    if (found.hit && !root.begins_outside && !query.leaving)
-      root.enters_inside = is_inside<Rule>(block, ray, run.begin, angle.source);
+    if (found.hit && !root.begins_outside && !query.leaving) root.enters_inside = is_inside<Rule>(block, ray, begin);
   }
   return root;
 }

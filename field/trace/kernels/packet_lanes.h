@@ -10,10 +10,12 @@ struct BlockRays {
   alignas(64) float t[packet_size], undecided[packet_size];
   alignas(64) int evaluations[packet_size];
   alignas(64) int cell[packet_size];
-  const FieldAround* around[packet_size];                        // of those that begin at a surface
-  alignas(64) float share[SharePatch::degree + 1][packet_size];  // ShareOnRun of the run, where patches give the angle
-  LaneSet from_surface;                                          // as in QueryOf
-  LaneSet begins_outside, enters_inside, hit;                    // as in RootOf
+  const FieldAround* around[packet_size];  // of those that begin at a surface
+  // Where patches give the angle: ShareLine of the run, and of the stretch that the fine level decides.
+  alignas(64) float line[4][packet_size];
+  alignas(64) float share[SharePatch::degree + 1][packet_size], fine_end[packet_size];
+  LaneSet from_surface;                        // as in QueryOf
+  LaneSet begins_outside, enters_inside, hit;  // as in RootOf
 };
 
 // Which ray of the packet is in which lane: when one has ended, another one takes its place.

@@ -35,7 +35,8 @@ struct PatchedAngle {
   // The shares on [t, t + h]. `error`: by which rounding may be off.
   Range shares_until(const Sample& p, F h, F error) const {
     const F* c = p.share.c;
-    const F end = c[1] * h, hh = h * h, bend = (abs_of(c[2]) + abs_of(c[3] * h) + abs_of(c[4]) * hh) * hh + error;
+    const F end = c[1] * h, hh = h * h,
+            bend = (abs_of(c[2]) + abs_of(c[3] * h) + abs_of(c[4]) * hh) * hh + run.spread + error;
     return {c[0] + min_of(0.0F, end) - bend, c[0] + max_of(0.0F, end) + bend};
   }
 

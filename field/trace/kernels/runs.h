@@ -78,13 +78,6 @@ class SlotBits<PacketFloat> {
   PacketInt place_{}, known_{};
 };
 
-// The layer of a coordinate.
-template <class F>
-inline IntOf<F> layer_of(F x) {
-  constexpr float last = 7.5F;
-  return whole_part(max_of(0.0F, min_of(x * 4 + 4, last)));
-}
-
 // Which of the eight layers of slots along an axis the ray is in, and where it leaves it. The outer layers go on
 // beyond the block, so that no rounding of its faces cuts off the end of a ray.
 template <class F>
@@ -122,11 +115,13 @@ class Layer {
 template <class F>
 struct Run {
   F begin{}, end{};
+  ShareLine<F> share{};  // of the range of angles, where patches give it
 };
 
+struct NoPatches {};
+
 // From slot to slot along the ray [Amanatides and Woo 1987]; neighbours are joined. Bounds of slots hold a little
-// beyond them, by far more than planes and places are rounded. Where the angle goes by patches, a run ends with its
-// patch.
+// beyond them, by far more than planes and places are rounded.
 template <Angle Rule, class F>
 class Runs {
  public:
@@ -138,37 +133,44 @@ class Runs {
   }
 
   // Finds the next run of each of these rays, and tells which have one.
-  Mask next(Mask rays, Run<F>& run) {
+  Mask next(const RayOf<F>& ray, Mask rays, Run<F>& run) {
     Mask found{}, open = rays & !ended_;
     while (any(open)) {
       const F leave = min_of(min_of(layers_[0].leave, layers_[1].leave), min_of(layers_[2].leave, end_));
       const IntOf<F> layer[3] = {layers_[0].index, layers_[1].index, layers_[2].index};
       const Mask crossed = open & (leave > t_), surface = crossed & slots_.at(layer, crossed);
       const Mask first = surface & !found;
-      Mask waits{};  // at a slot of another patch
       if constexpr (Rule == Angle::Patched) {
-        if (any(first)) patches.find(blocks_, first, layer);
-        waits = surface & found & !patches.hold(layer);
+        if (any(surface)) add_shares(ray, surface, first, layer, leave, run);
       }
       assign(first, run.begin, t_);
-      assign(surface & !waits, run.end, leave);
-      const Mask closed = found & crossed & ((!surface) | waits), moves = open & !waits;
+      assign(surface, run.end, leave);
+      const Mask closed = found & crossed & !surface;
       found = found | surface;
-      for (Layer<F>& l : layers_) l.step(moves & (l.leave <= leave));
-      t_ = select(crossed & moves, leave, t_);
-      const Mask last = moves & (leave >= end_);
+      for (Layer<F>& l : layers_) l.step(open & (l.leave <= leave));
+      t_ = select(crossed, leave, t_);
+      const Mask last = open & (leave >= end_);
       ended_ = ended_ | last;
       open = open & !closed & !last;
     }
     return found;
   }
 
-  Patches<F> patches;  // of the runs that were found last
-
  private:
+  void add_shares(const RayOf<F>& ray, Mask surface, Mask first, const IntOf<F> (&layer)[3], F leave, Run<F>& run) {
+    patches_.find(blocks_, ray, surface, layer);
+    const ShareLine<F> here = patches_.line();
+    assign(first, run.share.at, here.at);
+    assign(first, run.share.slope, here.slope);
+    assign(first, run.share.low, here.low);
+    assign(first, run.share.high, here.high);
+    patches_.widen(surface, t_, leave, run.share);
+  }
+
   BlocksOf<F> blocks_;
   SlotBits<F> slots_;
   Layer<F> layers_[3];
   F t_, end_;
   Mask ended_;
+  [[no_unique_address]] std::conditional_t<Rule == Angle::Patched, PatchLines<F>, NoPatches> patches_;
 };

@@ -35,71 +35,110 @@ inline OnWay<Degree, F> operator+(OnWay<Degree, F> p, const OnWay<Degree, F>& q)
   return p;
 }
 
-// The parts of the block in which rays are.
+// Calls visit(patch, rays) for the parts of blocks that hold slots, by their layers.
+template <class Visit>
+inline void visit_patches(const BlocksOf<float>& blocks, bool ray, const int (&layer)[3], const Visit& visit) {
+  if (ray) visit(blocks.block->patch(layer), true);
+}
+template <class Visit>
+inline void visit_patches(const BlocksOf<PacketFloat>& blocks, PacketInt rays, const PacketInt (&layer)[3],
+                          const Visit& visit) {
+  // Neighbours are mostly in one part.
+  while (any(rays)) {
+    const int first = __builtin_ctz(lane_bits(rays));
+    const int at[3] = {layer[0][first], layer[1][first], layer[2][first]};
+    const SharePatch& found = blocks.of(first).patch(at);
+    PacketInt here = rays & (blocks.cell == blocks.cell[first]);
+    for (int k = 0; k < 3; ++k) here &= layer[k] >> found.layers_log2 == at[k] >> found.layers_log2;
+    visit(found, here);
+    rays &= ~here;
+  }
+}
+
+// The share on a stretch of a ray: on a line in t, but for what lies between two numbers.
+template <class F>
+struct ShareLine {
+  F at{}, slope{};
+  F low{}, high{};
+};
+
+// Those of the parts that rays came to last.
+template <class F>
+class PatchLines {
+ public:
+  void find(const BlocksOf<F>& blocks, const RayOf<F>& ray, MaskOf<F> rays, const IntOf<F> (&layer)[3]) {
+    visit_patches(blocks, rays & !hold(layer), layer, [&](const SharePatch& patch, MaskOf<F> here) {
+      const int log2 = patch.layers_log2;
+      for (int k = 0; k < 3; ++k) key_[k] = select(here, layer[k] >> log2, key_[k]);
+      shift_ = select(here, IntOf<F>{} + log2, shift_);
+      F at = all_lanes<F>(patch.level), slope{};
+      for (int k = 0; k < 3; ++k) {
+        at += patch.slope[k] * (ray.origin[k] - patch.center[k]);
+        slope += patch.slope[k] * ray.direction[k];
+      }
+      at_ = select(here, at, at_);
+      slope_ = select(here, slope, slope_);
+      bent_ = select(here, all_lanes<F>(patch.bent), bent_);
+    });
+  }
+
+  ShareLine<F> line() const { return {at_, slope_, -bent_, bent_}; }
+  // Holds what is here from `begin` to `end`, too.
+  void widen(MaskOf<F> rays, F begin, F end, ShareLine<F>& line) const {
+    const F at = at_ - line.at, slope = slope_ - line.slope, a = at + slope * begin, b = at + slope * end;
+    assign(rays, line.low, min_of(line.low, min_of(a, b) - bent_));
+    assign(rays, line.high, max_of(line.high, max_of(a, b) + bent_));
+  }
+
+ private:
+  MaskOf<F> hold(const IntOf<F> (&layer)[3]) const {
+    return (layer[0] >> shift_ == key_[0]) & (layer[1] >> shift_ == key_[1]) & (layer[2] >> shift_ == key_[2]);
+  }
+
+  IntOf<F> key_[3] = {IntOf<F>{} - 1, IntOf<F>{} - 1, IntOf<F>{} - 1}, shift_{};
+  F at_{}, slope_{}, bent_{};
+};
+
+// The parts in which rays are.
 template <class F>
 struct Patches;
 
 template <>
 struct Patches<float> {
   const SharePatch* patch = nullptr;
-  int key[3], shift = 0;
 
   void find(const BlocksOf<float>& blocks, bool ray, const int (&layer)[3]) {
-    if (!ray) return;
-    patch = &blocks.block->patch(layer);
-    shift = patch->layers_log2;
-    for (int k = 0; k < 3; ++k) key[k] = layer[k] >> shift;
+    visit_patches(blocks, ray, layer, [&](const SharePatch& found, bool) { patch = &found; });
   }
   float coefficient(int i) const { return patch->coefficient[i]; }
-  void load() const {}
   float center(int k) const { return patch->center[k]; }
   float inverse_half() const { return patch->inverse_half; }
-  bool hold(const int (&layer)[3]) const {
-    return layer[0] >> shift == key[0] && layer[1] >> shift == key[1] && layer[2] >> shift == key[2];
-  }
 };
 
 template <>
 struct Patches<PacketFloat> {
-  const SharePatch* patch[packet_lanes] = {};
-  PacketInt key[3] = {}, shift{};
   PacketFloat column[floats_per_patch];  // what the patches hold, a ray in each lane
 
   void find(const BlocksOf<PacketFloat>& blocks, PacketInt rays, const PacketInt (&layer)[3]) {
-    // Neighbours are mostly in one part.
-    while (any(rays)) {
-      const int first = __builtin_ctz(lane_bits(rays));
-      const int at[3] = {layer[0][first], layer[1][first], layer[2][first]};
-      const SharePatch& found = blocks.of(first).patch(at);
-      const int log2 = found.layers_log2;
-      PacketInt here = rays & (blocks.cell == blocks.cell[first]);
-      for (int k = 0; k < 3; ++k) here &= layer[k] >> log2 == at[k] >> log2;
-      for (unsigned left = lane_bits(here); left != 0; left &= left - 1) patch[__builtin_ctz(left)] = &found;
-      for (int k = 0; k < 3; ++k) key[k] = select(here, layer[k] >> log2, key[k]);
-      shift = select(here, PacketInt{} + log2, shift);
-      rays &= ~here;
-    }
-  }
-  PacketInt hold(const PacketInt (&layer)[3]) const {
-    return (layer[0] >> shift == key[0]) & (layer[1] >> shift == key[1]) & (layer[2] >> shift == key[2]);
-  }
-  void load() {
     static constexpr SharePatch none{};
+    const SharePatch* patch[packet_lanes];
+    for (const SharePatch*& p : patch) p = &none;
+    visit_patches(blocks, rays, layer, [&](const SharePatch& found, PacketInt here) {
+      for (unsigned left = lane_bits(here); left != 0; left &= left - 1) patch[__builtin_ctz(left)] = &found;
+    });
     for (int part = 0; part < floats_per_patch; part += lanes) {
       V16 rows[packet_lanes];
       for (int lane = 0; lane < packet_lanes; ++lane)
-        __builtin_memcpy(
-            &rows[lane],
-            reinterpret_cast<const char*>(patch[lane] != nullptr ? patch[lane] : &none) + part * sizeof(float),
-            sizeof(V16));
+        __builtin_memcpy(&rows[lane], reinterpret_cast<const char*>(patch[lane]) + part * sizeof(float), sizeof(V16));
       PacketFloat columns[lanes];
       find_columns(rows, columns);
       for (int i = 0; i < lanes; ++i) column[part + i] = columns[i];
     }
   }
-  PacketFloat coefficient(int i) const { return column[i]; }
-  PacketFloat center(int k) const { return column[SharePatch::coefficients + k]; }
-  PacketFloat inverse_half() const { return column[SharePatch::coefficients + 3]; }
+  PacketFloat coefficient(int i) const { return column[number(__builtin_offsetof(SharePatch, coefficient)) + i]; }
+  PacketFloat center(int k) const { return column[number(__builtin_offsetof(SharePatch, center)) + k]; }
+  PacketFloat inverse_half() const { return column[number(__builtin_offsetof(SharePatch, inverse_half))]; }
+  static constexpr int number(unsigned long offset) { return static_cast<int>(offset / sizeof(float)); }
 };
 
 template <class F>
@@ -108,16 +147,20 @@ struct PatchCoefficients {
   F at(int monomial) const { return patches.coefficient(monomial); }
 };
 
-// The polynomials of the patches along their rays, from the place `from` on.
+// The share along rays: the polynomials of patches from the place `from` on, to within `spread`.
 template <class F>
 struct ShareOnRun {
   static constexpr int degree = SharePatch::degree;
   F from{};
   OnWay<degree, F> way{};
+  F spread{};
 
   ShareOnRun() = default;
-  ShareOnRun(Patches<F>& patches, const RayOf<F>& ray, F t) : from(t) {
-    patches.load();
+  explicit ShareOnRun(const ShareLine<F>& line) : spread(0.5F * (line.high - line.low)) {
+    way.c[0] = line.at + 0.5F * (line.low + line.high);
+    way.c[1] = line.slope;
+  }
+  ShareOnRun(const Patches<F>& patches, const RayOf<F>& ray, F t) : from(t) {
     WayLine<F> z[3];
     for (int k = 0; k < 3; ++k)
       z[k] = {(ray.origin[k] + ray.direction[k] * t - patches.center(k)) * patches.inverse_half(),
@@ -135,14 +178,34 @@ struct ShareOnRun {
   }
 };
 
-// Where a ray leaves the part of the block that it is in.
+// The layer of a coordinate.
 template <class F>
-inline F end_of_patch(Patches<F>& patches, const RayOf<F>& ray) {
-  patches.load();
-  F end = all_lanes<F>(infinity);
-  for (int k = 0; k < 3; ++k) {
-    const F d = nonzero(ray.direction[k]), half = 1 / patches.inverse_half();
-    end = min_of(end, (patches.center(k) + select(d > 0.0F, half, -half) - ray.origin[k]) / d);
-  }
-  return end;
+inline IntOf<F> layer_of(F x) {
+  constexpr float last = 7.5F;
+  return whole_part(max_of(0.0F, min_of(x * 4 + 4, last)));
 }
+
+// Of the part of the block in which a ray is at t, until it leaves that by more than places are rounded.
+template <class F>
+struct ShareInPatch {
+  ShareOnRun<F> share;
+  F end = all_lanes<F>(infinity);
+
+  ShareInPatch(const BlocksOf<F>& blocks, const RayOf<F>& ray, F t, MaskOf<F> rays) {
+    constexpr float clearly = 1e-6F, outermost = 1 - clearly;
+    Patches<F> patches;
+    const IntOf<F> layer[3] = {layer_of(ray.origin[0] + ray.direction[0] * t),
+                               layer_of(ray.origin[1] + ray.direction[1] * t),
+                               layer_of(ray.origin[2] + ray.direction[2] * t)};
+    patches.find(blocks, rays, layer);
+    share = ShareOnRun<F>(patches, ray, t);
+    const F half = 1 / patches.inverse_half();
+    for (int k = 0; k < 3; ++k) {
+      const F d = nonzero(ray.direction[k]), face = patches.center(k) + select(d > 0.0F, half, -half);
+      // The outer ones go on beyond the block.
+      const F leave = (face + select(d > 0.0F, all_lanes<F>(clearly), all_lanes<F>(-clearly)) - ray.origin[k]) / d;
+      end = min_of(end, select(abs_of(face) < outermost, leave, all_lanes<F>(infinity)));
+    }
+    end = select(end > t, end, all_lanes<F>(infinity));
+  }
+};
