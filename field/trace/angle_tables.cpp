@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <initializer_list>
+#include <limits>
 #include <optional>
 
 #include <tbb/parallel_for.h>
@@ -20,13 +21,19 @@ constexpr double largest_step = 0.02;
 constexpr int fewest_steps = 8, fewest_entries = 512;
 // Where G is nearly 0 curves of small angles run along the axis of G, see iso_table.cpp.
 constexpr double least_turn = 0.3;
-// To the kink at the border of the cavity branch, so that an entry stands there for all angles of a step.
-constexpr double fewest_entries_to_kink = 8;
-// The end of a curve counts up to so many times the gradient of the reference curve at the iso-value. Curves of angles
-// near pi/2 end far beyond, and move fast.
-constexpr double farthest_end = 3;
+// Curves end near by when it is at no more times the gradient of the reference curve at the iso-value than this.
+constexpr double farthest_end = 2;
+// Before the kink at the border of the cavity branch.
+constexpr double fewest_entries_to_kink = 4;
+// Where a curve may begin between entries, or have a kink there.
+constexpr std::size_t first_entries = 8;
 // Of float entries and of what is reckoned from them in float, relative.
 constexpr double rounding = 6e-7;
+// Towards the axis f = 0 curves are as steep as roots, and those of some angles of a step have ended: nothing is
+// certain from this f on. No field has so large a gradient there.
+constexpr double least_certain_field = 0.1;
+// Below V by so much no place is outside.
+constexpr double uncertain = 1e4;
 
 // A quadratic by its values at -1/2, 0 and 1/2, rounded to float.
 struct Quadratic {
@@ -77,51 +84,78 @@ class Step {
     below.assign(value.size(), 0);
     probe(curves[1], 0, {0.25, 0.5, 0.75});
     for (const double s : {-0.25, 0.25}) probe(Curve(like, middle + s * width, turn), s, {0, 0.5});
+    for (const double s : {-0.45, -0.35, -0.15, -0.05, 0.05, 0.15, 0.35, 0.45})
+      probe(Curve(like, middle + s * width, turn), s, {0, 0.25, 0.5, 0.75}, first_entries);
+    for (std::size_t k = 0; k < 3; ++k) leave_end_uncertain(curves[k].turned, 0.5 * (static_cast<double>(k) - 1));
   }
 
  private:
   double place(double entry, double s) const { return begin.at(s) + entry / inverse_step.at(s); }
 
-  // As long for all three curves; or so that they all end at the same entry, where they end at the axis x = 0; or so
-  // that the same entry stands at the kink of each, where they have one.
+  // Equal steps for all angles, from a begin that moves with the angle: so that the same entry stands at the kink of
+  // each curve, or else at the begin of each. Without kinks, curves that end near by end at the same entry, too: else,
+  // where begins move fast, far steps would with them. Where ends move fast themselves it would make quadratics in the
+  // angle ten times as rough.
   void find_places(const Curve (&curves)[3]) {
-    double lengths[3], kinks[3];
-    bool have_kinks = true, have_ends = true;
-    for (int k = 0; k < 3; ++k) {
+    double lengths[3];
+    bool ends_near = true;
+    for (std::size_t k = 0; k < 3; ++k) {
       const TurnedCurve& c = curves[k].turned;
       lengths[k] = (c.end() - c.begin()) / (fewest_entries - 1);
-      const auto kink = c.kink();
-      kinks[k] = kink.value_or(c.begin()) - c.begin();
-      have_kinks = have_kinks && kink;
-      have_ends = have_ends && c.ends_at_axis() && c.end() < farthest_end * (curves[k].correction.degree() - 1);
+      ends_near = ends_near && c.ends_at_axis() && c.end() < farthest_end * (curves[k].correction.degree() - 1);
     }
-    const double longest = std::max({lengths[0], lengths[1], lengths[2]}), before = std::ceil(kinks[1] / lengths[1]);
-    const bool to_kinks = have_kinks && before >= fewest_entries_to_kink;
-    for (int k = 0; k < 3; ++k) {
-      if (to_kinks) lengths[k] = kinks[k] / before;
-      else if (!have_ends) lengths[k] = longest;
-    }
-    begin = {curves[0].turned.begin(), curves[1].turned.begin(), curves[2].turned.begin()};
-    inverse_step = {1 / lengths[0], 1 / lengths[1], 1 / lengths[2]};
-    double entries = 0;
-    for (int k = 0; k < 3; ++k) {
+    const double longest = std::max({lengths[0], lengths[1], lengths[2]});
+    const auto kinks = kinks_of(curves, fewest_entries_to_kink * longest);
+    const bool at_kinks = kinks.has_value();
+    const std::array<double, 3> fixed =
+        kinks.value_or(std::array{curves[0].turned.begin(), curves[1].turned.begin(), curves[2].turned.begin()});
+    double before = 0, behind = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
       const TurnedCurve& c = curves[k].turned;
-      entries = std::max(entries, (c.end() - c.begin()) / lengths[k]);
+      if (at_kinks || !ends_near) lengths[k] = longest;
+      before = std::max(before, std::ceil((fixed[k] - c.begin()) / lengths[k]));
+      behind = std::max(behind, std::ceil((c.end() - fixed[k]) / lengths[k]));
     }
-    value.resize(static_cast<std::size_t>(std::ceil(entries)) + 1);
+    inverse_step = {1 / lengths[0], 1 / lengths[1], 1 / lengths[2]};
+    begin = {fixed[0] - before * lengths[0], fixed[1] - before * lengths[1], fixed[2] - before * lengths[2]};
+    value.resize(static_cast<std::size_t>(before + behind) + 1);
+  }
+
+  // Where all curves have one that is not nearer to the begin than this: from there they move too fast.
+  static std::optional<std::array<double, 3>> kinks_of(const Curve (&curves)[3], double from_begin) {
+    std::array<double, 3> kinks{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto kink = curves[k].turned.kink();
+      if (!kink || *kink - curves[k].turned.begin() < from_begin) return {};
+      kinks[k] = *kink;
+    }
+    return kinks;
   }
 
   void find_values(const Curve (&curves)[3]) {
     std::vector<double> found[3], slopes[3];
     for (std::size_t k = 0; k < 3; ++k) {
-      const double s = 0.5 * (static_cast<double>(k) - 1);
+      const double s = 0.5 * (static_cast<double>(k) - 1), first = curves[k].turned.begin();
+      const double first_value = curves[k].turned.value(first, 0, 0),
+                   first_slope = curves[k].slope(first, first_value).value_or(0);
+      int known = 0;
       for (std::size_t i = 0; i < value.size(); ++i) {
         const double u = place(static_cast<double>(i), s);
-        // By the parabola through the last three.
         std::vector<double>& v = found[k];
-        const bool known = i > 3;
-        const double guess = known ? 3 * (v[i - 1] - v[i - 2]) + v[i - 3] : 0;
-        v.push_back(curves[k].turned.value(u, guess, known ? 1e-4 / inverse_step.at(s) : 0));
+        if (u < first) {  // no place is there
+          v.push_back(first_value + first_slope * (u - first));
+          slopes[k].push_back(first_slope);
+          continue;
+        }
+        if (u > curves[k].turned.end() && curves[k].turned.ends_at_axis()) {
+          v.push_back(v[i - 1] + slopes[k][i - 1] / inverse_step.at(s));
+          slopes[k].push_back(slopes[k][i - 1]);
+          continue;
+        }
+        // By the parabola through the last three.
+        const bool guessed = ++known > 4;
+        const double guess = guessed ? 3 * (v[i - 1] - v[i - 2]) + v[i - 3] : 0;
+        v.push_back(curves[k].turned.value(u, guess, guessed ? 1e-4 / inverse_step.at(s) : 0));
         const double before = i > 0 ? (v[i] - v[i - 1]) * inverse_step.at(s) : 0;
         slopes[k].push_back(curves[k].slope(u, v[i]).value_or(before));
       }
@@ -132,16 +166,29 @@ class Step {
     }
   }
 
-  // How far below V a curve is, where `places` are from each entry to the next. What quadratics and straight lines are
-  // off are smooth arches, but for kinks: at most twice as much as there.
-  void probe(const Curve& curve, double s, std::initializer_list<double> places) {
+  // Curves fall in f towards their end, and those of other angles lie between them.
+  void leave_end_uncertain(const TurnedCurve& curve, double s) {
+    for (std::size_t i = value.size(); i-- > 0;) {
+      const double field = curve.line_of(place(static_cast<double>(i), s)).x(value[i].at(s));
+      if (field > least_certain_field) return;
+      below[i] = uncertain;
+    }
+  }
+
+  // How far below V a curve is, where `places` are from each entry to the next, or where it begins if it does so
+  // between them. What quadratics and straight lines are off are smooth arches, but for kinks: at most twice as much as
+  // there.
+  void probe(const Curve& curve, double s, std::initializer_list<double> places,
+             std::size_t most = std::numeric_limits<std::size_t>::max()) {
     double known = 1e-6;
-    for (std::size_t i = 0; i + 1 < value.size(); ++i) {
+    for (std::size_t i = 0; i + 1 < std::min(value.size(), most); ++i) {
+      const double from = place(static_cast<double>(i), s),
+                   begin_at = (curve.turned.begin() - from) * inverse_step.at(s);
+      if (begin_at > 1) continue;
       double low = 0, largest = 0;
-      for (const double fraction : places) {
-        const double from = value[i].at(s);
-        const double line = from + (value[i + 1].at(s) - from) * fraction;
-        const double error = line - curve.turned.value(place(static_cast<double>(i) + fraction, s), line, known);
+      for (const double at : places) {
+        const double fraction = std::max(at, begin_at), line = std::lerp(value[i].at(s), value[i + 1].at(s), fraction);
+        const double error = line - curve.turned.value(from + fraction / inverse_step.at(s), line, known);
         low = std::max(low, 2 * error);
         largest = std::max(largest, std::fabs(error));
       }

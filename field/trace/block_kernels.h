@@ -83,9 +83,9 @@ struct BlockView {
   const void* owner = nullptr;
   int degree = 4;
   IsoCurve::View iso;
-  const IsoCurve::View* rows = nullptr;  ///< where alpha varies: tables for equal steps of its share
+  const IsoCurve::View* rows = nullptr;  ///< where alpha varies: IsoCurve::views()
   int row_count = 0;
-  AngleTables tables;  ///< the same
+  AngleTables tables;  ///< where alpha varies
   /// Where directions give alpha, else null: the part of the block that holds a slot, by its layers, 0 to 7.
   const SharePatch& (*find_patch)(const void* owner, const int (&layer)[3]) = nullptr;
 

@@ -58,11 +58,18 @@ IsoCurve::IsoCurve(const Correction& correction, double alpha) : least_(alpha), 
   views_.push_back(rows_.front().view());
 }
 
-IsoCurve::IsoCurve(const Correction& correction, double least, double most) : least_(least), most_(most) {
-  const double steps = std::max(8.0, std::ceil((most - least) / largest_step)), step = (most - least) / steps;
+IsoCurve::IsoCurve(const Correction& correction, double least, double most, Range range) : least_(least), most_(most) {
+  if (range == Range::Skeletons) add_rows(correction);
+  else rows_ = tables_for(correction, least, most - least, 2, entry_count);
+  for (const IsoTable& row : rows_) views_.push_back(row.view());
+  angles_ = AngleCurves(correction, least, most);
+}
+
+void IsoCurve::add_rows(const Correction& correction) {
+  const double steps = std::max(8.0, std::ceil((most_ - least_) / largest_step)), step = (most_ - least_) / steps;
   const auto count = static_cast<std::size_t>(steps);
-  rows_ = tables_for(correction, least, step, count + 1, entry_count);
-  const auto between = tables_for(correction, least + step / 2, step, count, probe_count);
+  rows_ = tables_for(correction, least_, step, count + 1, entry_count);
+  const auto between = tables_for(correction, least_ + step / 2, step, count, probe_count);
   for (std::size_t k = 0; k < count; ++k)
     for (int i = 0; i < between[k].size(); ++i) {
       const IsoTable::Point p = between[k].point(i);
@@ -70,8 +77,6 @@ IsoCurve::IsoCurve(const Correction& correction, double least, double most) : le
       if (!(off > 0) || !std::isfinite(off)) continue;  // beyond the end of a table V_lower says no
       for (std::size_t row = k > 0 ? k - 1 : 0; row <= std::min(k + 2, count); ++row) rows_[row].lower_around(p, off);
     }
-  for (const IsoTable& row : rows_) views_.push_back(row.view());
-  angles_ = AngleCurves(correction, least, most);
 }
 
 bool IsoCurve::outside(double x_low, double x_high, double y_high) const {

@@ -18,10 +18,12 @@ class IsoCurve {
 
   /// For one angle.
   IsoCurve(const Correction&, double alpha);
-  /// For all angles from `least` to `most`, 0 <= least < most, with the degree, cavity and projection of a correction:
-  /// tables for angles at equal distances, cubic between them. What that is off is found half way between tables, and
-  /// V_lower lies below V by twice as much.
-  IsoCurve(const Correction&, double least, double most);
+  /// Of a range of angles: what gives the angle of a place.
+  enum class Range { Skeletons, Directions };
+  /// For all angles from `least` to `most`, 0 <= least < most, with the degree, cavity and projection of a correction.
+  /// Where skeletons have angles: tables for angles at equal distances, cubic between them. What that is off is found
+  /// half way between tables, and V_lower lies below V by twice as much. Where directions give them: for both ends.
+  IsoCurve(const Correction&, double least, double most, Range = Range::Skeletons);
 
   IsoCurve(IsoCurve&&) = default;  // views stay where they are
 
@@ -35,12 +37,12 @@ class IsoCurve {
   bool two_sided() const { return rows_.front().two_sided(); }
 
   /// V_lower(u) - v for the angle least + share (most - least), `share` in [0, 1]: in double what the kernels read
-  /// from tables().
+  /// from views(). Of one angle, or where skeletons have angles.
   double margin(double x, double y, double share = 0) const;
 
   /// Of the only table, or the first.
   View view() const { return views_.front(); }
-  /// Of all tables.
+  /// Of all tables: from the least angle to the largest.
   std::span<const View> views() const { return views_; }
   /// Of the range; none for one angle.
   AngleTables tables() const { return angles_.tables(); }
@@ -49,6 +51,7 @@ class IsoCurve {
 
  private:
   struct Place;
+  void add_rows(const Correction&);
 
   double least_, most_;
   std::vector<IsoTable> rows_;

@@ -246,52 +246,6 @@ TEST(IsoCurve, HoldsForAllAnglesOfARange) {
   }
 }
 
-// What kernels read where directions give the angle, in double: with cavity C is off by no more than a few roundings of
-// sums, and V_lower is below the curve. Nearer to the axis f = 0 than this no field has so large a gradient.
-TEST(AngleCurves, AreOnTheCurvesOfTheirAngles) {
-  constexpr double least_field = 0.3, largest_gradient = 2.5, allowed = 3e-4;
-  Random random(38);
-  for (const int n : {3, 4, 5}) {
-    const double least = random.between(0.2, 1.2), most = random.between(1.3, std::numbers::pi / 2);
-    const AngleCurves curves(Correction(n, least, true, Projection::Paper), least, most);
-    const AngleTables tables = curves.tables();
-    int found = 0;
-    for (int i = 0; i < 4000; ++i) {
-      const double share = random.between(0, 1), x = random.between(least_field, 2),
-                   y = random.between(0, largest_gradient * (n - 1));
-      const Correction c(n, least + share * (most - least), true, Projection::Paper);
-      const double at = share * tables.count;
-      const int step = std::min(static_cast<int>(at), tables.count - 1);
-      const double s = at - step - 0.5;
-      const auto quadratic = [&](double p, double q, double r) { return p + s * (q + s * r); };
-      const auto number = [&](const float* const(&of)[3]) {
-        return quadratic(static_cast<double>(of[0][step]), static_cast<double>(of[1][step]),
-                         static_cast<double>(of[2][step]));
-      };
-      const auto sine = static_cast<double>(tables.sin_theta[step]),
-                 cosine = static_cast<double>(tables.cos_theta[step]), u = y * sine - x * cosine;
-      const double place = (u - number(tables.begin)) * number(tables.inverse_step);
-      if (place < 0 || place >= static_cast<double>(tables.last[step])) continue;
-      const float* entry = tables.entries + 4 * (step * tables.stride + static_cast<int>(place));
-      const double fraction = place - std::floor(place);
-      const auto value = [&](const float* p) {
-        return quadratic(static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2]));
-      };
-      const double v = value(entry) + (value(entry + 4) - value(entry)) * fraction;
-      const double lower = v - static_cast<double>(entry[3]) -
-                           (static_cast<double>(entry[7]) - static_cast<double>(entry[3])) * fraction;
-      const auto on_line = [&](double w) { return c.value(w * sine - u * cosine, u * sine + w * cosine); };
-      if (v * sine - u * cosine < least_field || u * sine + v * cosine < 0) continue;
-      ++found;
-      EXPECT_NEAR(on_line(v), 1, allowed) << "n=" << n << " share=" << share << " x=" << x << " y=" << y;
-      if (u * sine + lower * cosine >= 0) {
-        EXPECT_LT(on_line(lower), 1) << "n=" << n << " share=" << share << " x=" << x << " y=" << y;
-      }
-    }
-    EXPECT_GT(found, 1000) << "n=" << n;
-  }
-}
-
 // Over a range of angles C is largest at one end, by the side of the reference curve: what kernels and starts of rays
 // ask alone.
 TEST(IsoCurve, AnglesPullOneWayOnEachSideOfTheReferenceCurve) {
