@@ -119,16 +119,17 @@ class Measurement {
     add_racer(figures, std::move(engine));
   }
 
-  // What one more sample of each pixel costs: sixteen samples less four, so that all that is done once cancels. The
-  // twelve go together, in the third pass of render().
+  // What one more sample of each pixel costs: sixteen samples less one, so that what is done once cancels. Fifteen go
+  // together, in the second pass of render(); the rays of a single sample go to the pixels' middles, as sixteen have to
+  // beside their own.
   Cost further_sample(const PreparedScene& ready) const {
     RenderSettings render_settings = ready.description.render;
     const auto film = [&](int samples) {
       render_settings.samples_per_pixel = samples;
       return cost_of([&] { render(ready.render_scene, render_settings, {.crop = {}, .threads = settings_.threads}); });
     };
-    const Cost few = film(4), many = film(16);
-    return {(many.wall_s - few.wall_s) / 12, (many.cpu_s - few.cpu_s) / 12};
+    const Cost one = film(1), many = film(16);
+    return {(many.wall_s - one.wall_s) / 15, (many.cpu_s - one.cpu_s) / 15};
   }
 
   // Evaluations are counted beside the race, because counting takes time.

@@ -124,11 +124,12 @@ void scout(const Job& job, const PixelWindow& window) {
   }
 }
 
-// 1, 3, 12, 16, 16, ... samples: pictures of a power of four, then never long without a look at the clock. Those of a
-// pass go together, which makes each cheaper. Under a time limit no more than should fit at the speed so far; 0 when
-// not even one does.
+// 1, 15, 16, 16, ... samples: a first picture soon, then never long without a look at the clock. Those of a pass go
+// together, which makes each cheaper. Under a time limit no more than should fit at the speed so far; 0 when not even
+// one does.
 int next_count(const Job& job, int done, double elapsed_s) {
-  int count = std::min(std::clamp(3 * done, 1, 16), job.samples - done);
+  constexpr int most = 16;
+  int count = std::min(done == 0 ? 1 : most - done % most, job.samples - done);
   if (!job.options.time_limit_s || done == 0) return count;
   const double left_s = *job.options.time_limit_s - elapsed_s;
   while (count > 0 && elapsed_s / done * count > left_s) count /= 2;
