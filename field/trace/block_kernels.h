@@ -124,6 +124,8 @@ struct TileLayers {
 
 /// What the search of a packet needs beside the stack, which may be small: one for each thread.
 struct PacketMemory {
+  // What is in them is known to the kernels alone, which check that it fits: a stack of islands of each lane, and some
+  // hundred and fifty floats a ray, most of them for runs whose angle goes by patches.
   static constexpr std::size_t of_search = 96 << 10, of_rays = packet_size * 608;
   alignas(64) unsigned char search[of_search];
   alignas(64) unsigned char rays[of_rays];

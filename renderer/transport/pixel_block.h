@@ -29,9 +29,9 @@ struct PixelJob {
 constexpr int block_side = 32;
 
 struct BlockSize {
-  int width = block_side, height = block_side;
+  int width, height;  ///< in pixels
 };
-/// Of blocks with so many samples a pixel: they hold 32 x 32 samples, or up to twice as many.
+/// Of blocks with so many samples a pixel, at least one: they hold 32 x 32 samples, or up to twice as many.
 BlockSize block_size(int samples);
 
 /// The samples of a pass of a few pixels of the film, together. A pixel's samples are added in order,

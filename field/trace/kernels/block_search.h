@@ -63,6 +63,7 @@ class BlockSearch {
   };
 
   static void store(PacketFloat v, float* to) { __builtin_memcpy(to, &v, sizeof v); }
+
   // search(rays), of as many of the rays at a time as have levels that stay good together; joins what it returns.
   template <const FieldLevel& (BlockView::*Make)() const, class Find>
   LaneSet in_levels(LaneSet rays, const Find& search) {

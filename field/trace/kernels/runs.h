@@ -159,11 +159,7 @@ class Runs {
  private:
   void add_shares(const RayOf<F>& ray, Mask surface, Mask first, const IntOf<F> (&layer)[3], F leave, Run<F>& run) {
     patches_.find(blocks_, ray, surface, layer);
-    const ShareLine<F> here = patches_.line();
-    assign(first, run.share.at, here.at);
-    assign(first, run.share.slope, here.slope);
-    assign(first, run.share.low, here.low);
-    assign(first, run.share.high, here.high);
+    assign(first, run.share, patches_.line());
     patches_.widen(surface, t_, leave, run.share);
   }
 

@@ -61,6 +61,10 @@ struct ShareLine {
   F at{}, slope{};
   F low{}, high{};
 };
+inline void assign(PacketInt mask, ShareLine<PacketFloat>& to, const ShareLine<PacketFloat>& from) {
+  using Line = ShareLine<PacketFloat>;
+  for (PacketFloat Line::*part : {&Line::at, &Line::slope, &Line::low, &Line::high}) assign(mask, to.*part, from.*part);
+}
 
 // Those of the parts that rays came to last.
 template <class F>
