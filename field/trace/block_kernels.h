@@ -60,9 +60,8 @@ struct FieldLevel {
 struct alignas(64) SharePatch {
   static constexpr int degree = 4, coefficients = 35;
   // What is asked most is in one cache line.
-  int layers_log2 = 2;   ///< the part is so many of the eight layers of slots wide
-  bool divided = false;  ///< there are smaller parts, which are more exact
-  float level = 0;       ///< in the part it is within `bent` of level + slope . (x - center)
+  int layers_log2 = 2;  ///< the part is 2^layers_log2 of the eight layers of slots wide
+  float level = 0;      ///< in the part it is within `bent` of level + slope . (x - center)
   float slope[3] = {0, 0, 0}, bent = 0;
   float center[3] = {0, 0, 0}, inverse_half = 1;
   float error = 0;  ///< what it may be off from the exact share: an estimate

@@ -206,28 +206,44 @@ std::vector<Factors> factors_of_monomials() {
 
 }  // namespace
 
-std::unique_ptr<const SharePatches::Part> SharePatches::make(const BlockKernels& kernels, int degree,
-                                                             const BlockLevel& strands, const int (&layer)[3],
-                                                             int layers_log2) const {
-  auto part = std::make_unique<Part>();
-  SharePatch& patch = part->patch;
+SharePatches::Part::~Part() {
+  const std::uintptr_t address = address_.load(std::memory_order_relaxed);
+  if ((address & divided) == 0) delete patch_at(address);
+  else delete parts_at(address);
+}
+
+// Two threads may both have made it; one copy is kept.
+std::uintptr_t SharePatches::Part::keep(Made made) const {
+  static_assert(alignof(SharePatch) > divided && alignof(Eight) > divided);
+  const std::uintptr_t address = made.patch ? reinterpret_cast<std::uintptr_t>(made.patch.get())
+                                            : reinterpret_cast<std::uintptr_t>(made.parts.get()) + divided;
+  std::uintptr_t before = 0;
+  if (!address_.compare_exchange_strong(before, address, std::memory_order_acq_rel)) return before;
+  made.patch.release();
+  made.parts.release();
+  return address;
+}
+
+SharePatches::Made SharePatches::make(const BlockKernels& kernels, int degree, const BlockLevel& strands,
+                                      const int (&layer)[3], int layers_log2) const {
+  auto made = std::make_unique<SharePatch>();
+  SharePatch& patch = *made;
   patch.layers_log2 = layers_log2;
   const int width = 1 << layers_log2;
   patch.inverse_half = 8.0F / static_cast<float>(width);
   for (int k = 0; k < 3; ++k)
     patch.center[k] = (static_cast<float>(layer[k] >> layers_log2) + 0.5F) * 0.25F * static_cast<float>(width) - 1;
   const double residual = fit_patch(data_of(kernels, degree, strands.level, patch), patch);
+  if (layers_log2 > 0 && residual > largest_residual) {
+    bytes_.fetch_add(sizeof(Eight), std::memory_order_relaxed);
+    return {.patch = {}, .parts = std::make_unique<const Eight>()};
+  }
   patch.error = static_cast<float>(strands.angle_error + 2 * residual);  // it is off by more between places
   find_line(patch);
-  count_.fetch_add(1, std::memory_order_relaxed);
-  if (layers_log2 > 0 && residual > largest_residual) {
-    patch.divided = true;
-    part->parts = std::make_unique<const Eight>();
-    return part;
-  }
+  bytes_.fetch_add(sizeof(SharePatch), std::memory_order_relaxed);
   for (float known = error_.load(std::memory_order_relaxed);
        known < patch.error && !error_.compare_exchange_weak(known, patch.error, std::memory_order_relaxed);) {}
-  return part;
+  return {.patch = std::move(made), .parts = {}};
 }
 
 ShareAt share_at(const SharePatch& patch, const Vec3d& at) {

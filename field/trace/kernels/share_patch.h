@@ -43,15 +43,22 @@ inline void visit_patches(const BlocksOf<float>& blocks, bool ray, const int (&l
 template <class Visit>
 inline void visit_patches(const BlocksOf<PacketFloat>& blocks, PacketInt rays, const PacketInt (&layer)[3],
                           const Visit& visit) {
-  // Neighbours are mostly in one part.
-  while (any(rays)) {
-    const int first = __builtin_ctz(lane_bits(rays));
+  // All parts are looked up first, those of rays in one slot once: none waits for what another one is found to be, so
+  // that the machine waits for memory only once for many.
+  const SharePatch* found[packet_lanes];
+  PacketInt in_slot[packet_lanes];
+  int count = 0;
+  for (PacketInt left = rays; any(left); left &= ~in_slot[count++]) {
+    const int first = __builtin_ctz(lane_bits(left));
     const int at[3] = {layer[0][first], layer[1][first], layer[2][first]};
-    const SharePatch& found = blocks.of(first).patch(at);
-    PacketInt here = rays & (blocks.cell == blocks.cell[first]);
-    for (int k = 0; k < 3; ++k) here &= layer[k] >> found.layers_log2 == at[k] >> found.layers_log2;
-    visit(found, here);
-    rays &= ~here;
+    in_slot[count] =
+        left & (blocks.cell == blocks.cell[first]) & (layer[0] == at[0]) & (layer[1] == at[1]) & (layer[2] == at[2]);
+    found[count] = &blocks.of(first).patch(at);
+  }
+  for (int i = 0; i < count; ++i) {
+    PacketInt here = in_slot[i];
+    while (i + 1 < count && found[i + 1] == found[i]) here |= in_slot[++i];
+    visit(*found[i], here);
   }
 }
 
