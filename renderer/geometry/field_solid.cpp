@@ -66,6 +66,10 @@ FieldSample FieldSolid::sample(const Vec3d& p) const {
           .gradient = in_world_ ? s.corrected_gradient : local_from_world_.transposed(s.corrected_gradient)};
 }
 
+double FieldSolid::value(const Vec3d& p) const {
+  return corrected_value(tracer_->field(), in_world_ ? p : local_from_world_.point(p));
+}
+
 Box3 FieldSolid::to_world(const Box3& local) const {
   if (in_world_) return local;
   Box3 box;

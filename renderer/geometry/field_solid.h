@@ -21,6 +21,7 @@ class FieldSolid final : public Solid {
   Box3 extent() const override;
   Box3 reach() const override;
   FieldSample sample(const Vec3d&) const override;
+  double value(const Vec3d&) const override;
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
   std::vector<SolidPart> parts() const override;
   std::optional<double> hit_in_part(const SolidPart&, const Ray&, bool any, ElementLog&) const override;

@@ -71,6 +71,8 @@ class Solid {
   virtual Box3 reach() const { return {}; }
   /// The exact field in world units, 1 on the surface, whatever is traced; 0 where reach() is empty.
   virtual FieldSample sample(const Vec3d&) const { return {}; }
+  /// sample().value up to rounding, at a part of the cost.
+  virtual double value(const Vec3d&) const { return 0; }
   /// t of the first hit in an element, in [ray.t_min, ray.t_max] but not depending on t_max; any hit with `any`.
   virtual std::optional<double> hit(std::size_t element, const Ray&, bool any, ElementLog&) const = 0;
   /// The elements, or what they are known to consist of by now; together they hold all surface. Whatever rays are under

@@ -30,9 +30,11 @@ void TreeSolid::describe(std::span<const HitToDescribe> hits) const {
 
 FieldSample TreeSolid::sample(const Vec3d& p) const {
   using X = Jet<double, 3>;
-  const X f = value(tracer_.tree(), Vec3<X>{X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)});
+  const X f = marrow::value(tracer_.tree(), Vec3<X>{X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)});
   return {.value = f.value, .gradient = {f.slope[0], f.slope[1], f.slope[2]}};
 }
+
+double TreeSolid::value(const Vec3d& p) const { return marrow::value(tracer_.tree(), p); }
 
 std::size_t TreeSolid::primitive_count() const { return leaf_count(tracer_.tree()); }
 

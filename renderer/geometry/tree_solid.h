@@ -18,6 +18,7 @@ class TreeSolid final : public Solid {
   Box3 extent() const override { return tracer_.bounds(); }
   Box3 reach() const override { return tracer_.bounds(); }
   FieldSample sample(const Vec3d&) const override;
+  double value(const Vec3d&) const override;
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
   void describe(std::span<const HitToDescribe>) const override;
   std::size_t primitive_count() const override;

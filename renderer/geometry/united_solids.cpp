@@ -57,7 +57,7 @@ std::optional<std::size_t> UnitedSolids::cover_of(const PartHit& hit, const Ray&
   std::optional<std::size_t> cover;
   const Vec3d p = ray.at(hit.t);
   for_each_other(hit.solid, p, [&](std::size_t other) {
-    if (solids_[other].solid->sample(p).value > 1 + clearly) cover = other;
+    if (solids_[other].solid->value(p) > 1 + clearly) cover = other;
     return !cover;
   });
   return cover;
@@ -99,9 +99,9 @@ PartHit UnitedSolids::exit_of(std::size_t cover, const Ray& ray, double t, std::
   const Solid& solid = *solids_[cover].solid;
   Ray onward = ray;
   onward.t_min = t;
-  double deepest = solid.sample(ray.at(t)).value;
+  double deepest = solid.value(ray.at(t));
   for (double step = 1e-9 * max_component(solids_[cover].reach.size()); deepest < 1 + surely; step *= 2) {
-    const double value = solid.sample(ray.at(t + step)).value;
+    const double value = solid.value(ray.at(t + step));
     if (!(value > deepest)) break;
     deepest = value;
     onward.t_min = t + step;
@@ -134,21 +134,24 @@ PartHit UnitedSolids::first_hit(const Ray& ray, std::vector<RayVisit>* visits) c
 double UnitedSolids::largest_at(const Body& body, const Vec3d& p) const {
   double largest = 0;
   for (const std::size_t s : body)
-    if (solids_[s].reach.contains(p)) largest = std::max(largest, solids_[s].solid->sample(p).value);
+    if (solids_[s].reach.contains(p)) largest = std::max(largest, solids_[s].solid->value(p));
   return largest;
 }
 
 // Away from both, back along the ray or on along it, or, where two all but touch, to a side: the first of growing steps
 // that is outside all of the body.
 void UnitedSolids::free_start(std::size_t solid, const Ray& ray, SurfaceHit& hit) const {
-  FieldSample nearest;
+  const Solid* nearest = nullptr;
+  double largest = 1 - clearly;
   for_each_other(solid, hit.outside, [&](std::size_t other) {
-    const FieldSample s = solids_[other].solid->sample(hit.outside);
-    if (s.value > nearest.value) nearest = s;
+    const double value = solids_[other].solid->value(hit.outside);
+    if (!(value > largest)) return true;
+    nearest = solids_[other].solid;
+    largest = value;
     return true;
   });
-  if (!(nearest.value > 1 - clearly)) return;
-  const Vec3d normal = hit.normal, away = outward(nearest), back = -ray.direction.vec();
+  if (nearest == nullptr) return;
+  const Vec3d normal = hit.normal, away = outward(nearest->sample(hit.outside)), back = -ray.direction.vec();
   const Body& body = bodies_[solids_[solid].body];
   const Box3& reach = solids_[solid].reach;
   const double first = first_step(hit, reach), longest = 1e-2 * max_component(reach.size());
