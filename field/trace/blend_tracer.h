@@ -29,6 +29,7 @@ namespace marrow {
 class Block;
 class Tile;
 struct CellStep;
+struct SurfaceRule;
 
 struct TraceOptions {
   std::string instruction_set;  ///< "sse4", "avx2", "avx512"; empty: the best of this machine
@@ -161,6 +162,8 @@ class BlendTracer {
                   CellHits&) const;
   class CellGroup;
   const Block* block_for_packets(const TracePart&) const;
+  std::optional<double> step_by_places(const SurfaceRule&, const SurfaceQuery& hit, const UnitVec3& normal,
+                                       float nearest) const;
   void add_parts(std::size_t tile, const Tile& within, std::vector<TracePart>&) const;
   const Block& block(const Tile&, int slot) const;
   std::unique_ptr<State> state_;

@@ -179,7 +179,12 @@ struct SurfaceLanes {
 
   alignas(64) float growth[3][lanes];  ///< out: the direction in which the corrected field grows, of any length
   alignas(64) float step[lanes];       ///< out: how far to go against it until the field is certainly below 1
+  alignas(64) float margin[lanes];     ///< out: positive where that is proved
 };
+
+/// Steps away from a surface, over the distance to the nearest source: from the first on, each twice the one before,
+/// below the second.
+inline constexpr float shortest_start = 8e-6F, longest_start = 0.1F;
 
 /// What tells where the surface of a blend is.
 struct SurfaceRule {
@@ -300,8 +305,10 @@ struct BlockKernels {
   void (*roots_between)(const CellRays* cells, int count, const PacketView&, bool any, PacketMemory&, CellRoots&);
   /// At the first `count` places, which share a level.
   void (*point_fields)(const FieldLevel&, int degree, const PlacesInLanes&, int count, PointField*);
-  /// Finds `growth` and `step` of the first `count` lanes (B3 and B4 of tracing.md).
+  /// Finds `growth`, `step` and its `margin` of the first `count` lanes (B3 and B4 of tracing.md).
   void (*surface_starts)(const SurfaceRule&, int count, SurfaceLanes&);
+  /// Finds `margin` of the first `count` lanes, which are places anywhere: positive where the field is below 1.
+  void (*place_margins)(const SurfaceRule&, int count, SurfaceLanes&);
   /// Through the slots of a set, in coordinates of the cube of 4 x 4 x 4 slots, [-1, 1]^3.
   void (*walk)(std::uint64_t slots, const LocalRay&, float t0, float t1, Walk&);
   CubeBounds (*cube_bounds)(const FieldLevel&, int degree, const float center[3], float half);

@@ -46,9 +46,9 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root,    enter_cell,     roots_between, point_fields, surface_starts,
-                                        walk,          cube_bounds,    far_moments,   far_split,    octant_bounds,
-                                        strand_shares, strand_samples, add_strand};
+  static constexpr BlockKernels kernels{first_root,    enter_cell,    roots_between,  point_fields, surface_starts,
+                                        place_margins, walk,          cube_bounds,    far_moments,  far_split,
+                                        octant_bounds, strand_shares, strand_samples, add_strand};
   return kernels;
 }
 

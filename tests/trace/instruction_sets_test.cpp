@@ -10,6 +10,7 @@
 #include "field/trace/far_field.h"
 #include "tests/trace/all_cells.h"
 #include "tests/trace/random_rays.h"
+#include "tests/trace/touching_limbs.h"
 
 namespace marrow::test {
 namespace {
@@ -92,6 +93,28 @@ TEST(InstructionSets, GiveTheSameBits) {
   for (const Variant& v : variants_here(low_far_degree)) std::cout << " / " << v.name;
   std::cout << '\n';
   EXPECT_GT(hits, rays / 10);
+}
+
+// There steps are proved by places.
+TEST(InstructionSets, GiveTheSameStartsWhereLimbsTouch) {
+  Random random(92);
+  int hits = 0;
+  for (const int degree : {3, 4, 5, 6}) {
+    const BlendField blend = touching_limbs(random, degree);
+    const auto variants = variants_here(low_far_degree);
+    std::vector<AllCells> tracers;
+    for (const Variant& v : variants) tracers.emplace_back(blend, v.options);
+    for (int i = 0; i < 100; ++i) {
+      const Ray ray = between_limbs(random);
+      const auto hit = tracers.front().first_hit(ray);
+      if (!hit) continue;
+      ++hits;
+      const Vec3d p = ray.at(hit->t), start = tracers.front().tracer().surface_at(hit->cell, p).outside;
+      for (std::size_t k = 1; k < variants.size(); ++k)
+        ASSERT_TRUE(same(tracers[k].tracer().surface_at(hit->cell, p).outside, start)) << variants[k].name;
+    }
+  }
+  EXPECT_GT(hits, 200);
 }
 
 }  // namespace

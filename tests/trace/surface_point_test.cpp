@@ -1,11 +1,14 @@
-// Normals are those of the exact closed form.
+// Normals are those of the exact closed form, and starts beside the surface are outside.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <gtest/gtest.h>
 
 #include "tests/trace/all_cells.h"
+#include "tests/trace/large_cells.h"
 #include "tests/trace/random_rays.h"
+#include "tests/trace/touching_limbs.h"
 
 namespace marrow::test {
 namespace {
@@ -82,6 +85,43 @@ TEST(SurfacePoint, NormalIsThatOfTheExactFieldWhereTheAngleVaries) {
     expect_normals_of_varied_angles(random, random_stranded_scene(random, {n, 1, true}, 9), hits);
   }
   EXPECT_GT(hits, 200);
+}
+
+// The shortest of steps along the normal, each twice the one before, from which C is below 1 by more than errors of
+// blocks and rounding take; none up to a twentieth of the distance to the skeletons.
+std::optional<double> clear_step(const BlendField& blend, const Vec3d& hit, const UnitVec3& normal, double distance) {
+  for (double step = 1e-5 * distance; step < 0.05 * distance; step *= 2)
+    if (corrected_value(blend, hit + normal * step) < 1 - 1e-4) return step;
+  return {};
+}
+
+// There C hardly changes along the limbs, and bounds about a hit prove next to nothing. Starts are outside, and not
+// farther away than they have to be.
+TEST(SurfacePoint, StartsBetweenLimbsThatTouchAreOutside) {
+  Random random(85);
+  int hits = 0, flat = 0;
+  double deepest = 0;
+  for (int scene = 0; scene < 60; ++scene) {
+    const AllCells cells(touching_limbs(random, random.whole(3, 6)), scene % 2 ? large_cells() : TraceOptions{});
+    const BlendField& blend = cells.tracer().field();
+    for (int i = 0; i < 40; ++i) {
+      const Ray ray = between_limbs(random);
+      const auto hit = cells.first_hit(ray);
+      if (!hit) continue;
+      const Vec3d p = ray.at(hit->t);
+      const SurfacePoint found = cells.tracer().surface_at(hit->cell, p);
+      const auto step = clear_step(blend, p, found.normal, 0.4);
+      if (!step) continue;
+      ++hits;
+      flat += length(evaluate(blend, p).corrected_gradient) < 0.02;
+      const double value = corrected_value(blend, found.outside);
+      deepest = std::max(deepest, 1 - value);
+      EXPECT_LT(value, 1) << "n " << blend.degree << ", alpha " << blend.alpha << " at x " << p.x << ", y " << p.y;
+      EXPECT_LT(length(found.outside - p), 2 * *step);
+    }
+  }
+  std::cout << "  " << hits << " hits, " << flat << " where C is flat, starts down to 1 - " << deepest << '\n';
+  EXPECT_GT(flat, 500);
 }
 
 }  // namespace

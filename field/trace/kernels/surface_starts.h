@@ -53,27 +53,34 @@ class SurfaceStart {
     }
   }
 
-  // Where no step is proved, beside a touch of the surface with itself, the one that comes nearest to it.
-  F find_step(const F (&normal)[3]) {
+  struct Step {
+    F length, margin;
+  };
+  // Where no step is proved, beside a touch of the surface with itself, the one that comes nearest to it; its margin is
+  // not positive.
+  Step find_step(const F (&normal)[3]) {
     // So that rays get away from where rounding leaves doubts, or, where alpha varies, what tables and shares are off
     // by: 7e-5 was met at a kink.
     constexpr float enough = Varied ? 1.5e-4F : 2e-5F;
     // Near a single skeleton a step of s distances lowers C by s (n - 1): shorter ones are not enough.
-    constexpr float shortest = Varied ? 3.2e-5F : 8e-6F;
+    constexpr float shortest = Varied ? 4 * shortest_start : shortest_start;
     bend_of(h_, normal, bent_);
     slope_ = dot3(gradient_, normal);
     if constexpr (Varied) share_slope_ = share_along(normal);
     F best{}, largest = all_lanes<F>(-infinity);
     Mask open = known_;
-    for (float share = shortest; share < 0.1F && any(open); share *= 2) {
+    for (float share = shortest; share < longest_start && any(open); share *= 2) {
       const F step = share * nearest_, found = margin(step);
       const Mask better = open & (found > largest);
       best = select(better, step, best);
       largest = select(better, found, largest);
       open = open & !(found > enough);
     }
-    return best;
+    return {best, largest};
   }
+
+  // Of the places themselves: what is summed there has no remainder.
+  F margin_here() const { return margin(F{}); }
 
  private:
   F from(const float (&of)[lanes]) const { return lanes_at(of + first_, F{}); }
@@ -148,7 +155,9 @@ inline void find_starts(const SurfaceRule& rule, int first, int count, SurfaceLa
   }
   const F length = root_of(dot3(normal, normal));
   for (F& n : normal) n /= length;
-  store_lanes(start.find_step(normal), hits.step + first);
+  const auto step = start.find_step(normal);
+  store_lanes(step.length, hits.step + first);
+  store_lanes(step.margin, hits.margin + first);
 }
 
 template <bool Varied>
@@ -163,4 +172,16 @@ inline void find_starts(const SurfaceRule& rule, int count, SurfaceLanes& hits) 
 void surface_starts(const SurfaceRule& rule, int count, SurfaceLanes& hits) {
   if (rule.tables.count > 1) find_starts<true>(rule, count, hits);
   else find_starts<false>(rule, count, hits);
+}
+
+template <bool Varied>
+inline void find_margins(const SurfaceRule& rule, int count, SurfaceLanes& places) {
+  for (int first = 0; first < count; first += packet_lanes)
+    store_lanes(SurfaceStart<Varied, PacketFloat>(rule, places, first, count - first).margin_here(),
+                places.margin + first);
+}
+
+void place_margins(const SurfaceRule& rule, int count, SurfaceLanes& places) {
+  if (rule.tables.count > 1) find_margins<true>(rule, count, places);
+  else find_margins<false>(rule, count, places);
 }
