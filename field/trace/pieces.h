@@ -50,7 +50,7 @@ class PieceCutter {
   /// `critical_field`: the f from which on the corrected field is above 1 whatever the gradient.
   PieceCutter(int degree, double critical_field);
 
-  /// All pieces of a blend; segments are cut so that no piece is longer than twice its larger radius.
+  /// All pieces of a blend; segments are cut so that no piece is longer than three times its larger radius.
   std::vector<Piece> cut(const BlendField&) const;
   /// The part of a piece between two parameters in [0, 1]; it keeps the whole piece's inside_distance.
   Piece part(const Piece&, double begin, double end) const;

@@ -1,5 +1,6 @@
 #include "field/trace/quadrature.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "field/math/elementary.h"
@@ -26,7 +27,7 @@ GaussNodes gauss_legendre(int count) {
   return rules[static_cast<std::size_t>(count - 1)];
 }
 
-GaussError::GaussError(int degree) : degree_(degree) {
+GaussError::GaussError(int degree) : degree_(degree), close_(&RuleErrors::of(degree)) {
   // c_m = (m!)^4 / ((2m+1) ((2m)!)^2) = 1 / ((2m+1) binom(2m, m)^2)
   for (int m = 1; m <= max_gauss_nodes; ++m) {
     const double central = binomial(2 * m, m);
@@ -38,34 +39,60 @@ GaussError::GaussError(int degree) : degree_(degree) {
 
 namespace {
 
-// What does not depend on the number of nodes.
-struct Scales {
-  double shrink, field, gradient;  // (length / distance)^2, and the factors of field_ and gradient_
-};
+using Bound = GaussError::Bound;
 
-Scales scales(int degree, double mass, double largest_radius, double slope, double length, double distance) {
-  const double ratio = length / distance, taper = 1 + slope * distance / largest_radius;
-  const double field = mass * integer_power(taper, degree - 1) / integer_power(distance, degree);
-  return {ratio * ratio, field, field * taper * largest_radius / distance};
-}
+Bound least(const Bound& a, const Bound& b) { return {std::min(a.field, b.field), std::min(a.gradient, b.gradient)}; }
 
 }  // namespace
 
+// What holds of one piece at one distance, for rules of 1, 2, 3, ... nodes in turn.
+class GaussError::Rules {
+ public:
+  Rules(const GaussError& of, double mass, double largest_radius, double slope, double length, double distance)
+      : of_(of) {
+    const double ratio = length / distance, taper = 1 + slope * distance / largest_radius;
+    shrink_ = ratio * ratio;
+    series_.field = mass * integer_power(taper, of.degree_ - 1) / integer_power(distance, of.degree_);
+    series_.gradient = series_.field * taper * largest_radius / distance;
+    const double half = 0.5 * length, halves = distance / half;
+    if (halves < RuleErrors::least_distance || halves >= RuleErrors::end_of_distances) return;
+    row_ = &of.close_->row(halves, slope != 0);
+    unit_.field = mass / integer_power(half, of.degree_);
+    unit_.gradient = unit_.field * largest_radius / half;
+  }
+
+  /// To be asked for 1, 2, 3, ... nodes.
+  Bound next() {
+    ++nodes_;
+    series_.field *= shrink_;
+    series_.gradient *= shrink_;
+    const Bound by_series{of_.field_[nodes_] * series_.field, of_.gradient_[nodes_] * series_.gradient};
+    if (row_ == nullptr) return by_series;
+    const RuleErrors::Error& e = (*row_)[nodes_];
+    return least(by_series, {e.field * unit_.field, e.gradient * unit_.gradient});
+  }
+
+ private:
+  const GaussError& of_;
+  std::size_t nodes_ = 0;
+  double shrink_ = 0;
+  Bound series_{}, unit_{};
+  const RuleErrors::Row* row_ = nullptr;
+};
+
 GaussError::Bound GaussError::bound(int nodes, double mass, double largest_radius, double slope, double length,
                                     double distance) const {
-  const Scales s = scales(degree_, mass, largest_radius, slope, length, distance);
-  const double shrink = integer_power(s.shrink, nodes);
-  const auto m = static_cast<std::size_t>(nodes);
-  return {field_[m] * s.field * shrink, gradient_[m] * s.gradient * shrink};
+  Rules rules(*this, mass, largest_radius, slope, length, distance);
+  Bound b{};
+  for (int m = 1; m <= nodes; ++m) b = rules.next();
+  return b;
 }
 
 GaussError::Rule GaussError::smallest_rule(double mass, double largest_radius, double slope, double length,
                                            double distance, Bound allowed) const {
-  Scales s = scales(degree_, mass, largest_radius, slope, length, distance);
+  Rules rules(*this, mass, largest_radius, slope, length, distance);
   for (int m = 1;; ++m) {
-    s.field *= s.shrink;
-    s.gradient *= s.shrink;
-    const Bound b{field_[static_cast<std::size_t>(m)] * s.field, gradient_[static_cast<std::size_t>(m)] * s.gradient};
+    const Bound b = rules.next();
     const bool within = b.field <= allowed.field && b.gradient <= allowed.gradient;
     if (within || m == max_gauss_nodes) return {m, b, within};
   }

@@ -4,9 +4,11 @@
 #include <array>
 #include <span>
 
+#include "field/trace/rule_errors.h"
+
 namespace marrow {
 
-inline constexpr int max_gauss_nodes = 12;
+inline constexpr int max_gauss_nodes = RuleErrors::most_nodes;
 
 /// Nodes in (0, 1); the weights sum to 1.
 struct GaussNodes {
@@ -25,6 +27,8 @@ GaussNodes gauss_legendre(int count);
 /// binom(n+k-1, k) d^-(n+k), because Gegenbauer polynomials are largest at 1 [tracing.md 3.1]; that
 /// of the vector (p-q) d^-(n+2) at most binom(n+k, k) d^-(n+1+k). Leibniz' rule with the linear radius
 /// gives at most the factor (1 + |slope| d / tau)^(exponent of tau).
+/// Close to a piece, from half its length on, that grows with m, though the rule converges: RuleErrors tell the error
+/// itself, and the smaller of the two counts.
 class GaussError {
  public:
   explicit GaussError(int degree);
@@ -48,7 +52,10 @@ class GaussError {
                      Bound allowed) const;
 
  private:
+  class Rules;
+
   int degree_;
+  const RuleErrors* close_;
   std::array<double, max_gauss_nodes + 1> field_{}, gradient_{};  // c_m binom, for each m
 };
 

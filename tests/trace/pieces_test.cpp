@@ -26,7 +26,7 @@ TEST(Pieces, AddUpToTheBlend) {
     const BlendField blend = random_scene(random, {.degree = n}, 9);
     const auto pieces = PieceCutter(n, critical_field).cut(blend);
     ASSERT_GE(pieces.size(), blend.size());
-    for (const Piece& p : pieces) EXPECT_LE(p.length, 2 * p.radius * (1 + 1e-9));
+    for (const Piece& p : pieces) EXPECT_LE(p.length, 3 * p.radius * (1 + 1e-9));
     for (int i = 0; i < 300; ++i) {
       const Vec3d p = random.vector(3);
       SkeletonSample sum;

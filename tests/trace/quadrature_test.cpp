@@ -101,5 +101,20 @@ TEST(Quadrature, BoundHoldsForAnyPieceAndPlace) {
   EXPECT_GT(tightness.back(), 0.05) << "the bound serves nobody";
 }
 
+// A piece of two radii at the distance of its radius: the series of derivatives would not do with 12 nodes.
+TEST(Quadrature, CloseToAPieceRulesConvergeAsEllipsesSay) {
+  const GaussError errors(4);
+  double before = 1;
+  for (int nodes = 4; nodes <= max_gauss_nodes; ++nodes) {
+    const double error = errors.bound(nodes, 1, 1, 0, 2, 1).field;
+    // Poles beside the middle, at i: the ellipse through them has semiaxes that add up to 1 + sqrt(2).
+    EXPECT_LT(error, before / 4.5) << nodes;
+    before = error;
+  }
+  const auto rule = errors.smallest_rule(1, 1, 0, 2, 1, {1e-7, 4e-7});
+  EXPECT_TRUE(rule.within);
+  EXPECT_LE(rule.nodes, 12);
+}
+
 }  // namespace
 }  // namespace marrow::test
