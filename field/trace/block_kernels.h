@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "field/math/lane_set.h"
+#include "field/trace/cube_remainder.h"
 #include "field/trace/field_around.h"
 #include "field/trace/iso_curve.h"
 
@@ -45,7 +46,7 @@ struct FieldLevel {
   const float* sources = nullptr;        ///< curve groups, then point groups; 64-byte aligned
   int curve_groups = 0;                  ///< of exponent m = degree
   int point_groups = 0;                  ///< of exponent m = degree - 1
-  int far_degree = 4;                    ///< of the polynomials: 2, 4 or 6
+  int far_degree = 4;                    ///< of the polynomials: 2 or 4
   const float* far = nullptr;            ///< (f, Gx, Gy, Gz) for each monomial
   float f_error = 0, g_error = 0;        ///< added to f and |G| wherever "outside" is to be proved
   float far_slope = 0, far_g_slope = 0;  ///< |derivative| of the far f and G along any line, at most

@@ -5,10 +5,24 @@
 #include <cmath>
 
 #include "field/math/elementary.h"
+#include "field/trace/cube_remainder.h"
 #include "field/trace/near_groups.h"
 #include "field/trace/source_groups.h"
 
 namespace marrow {
+namespace {
+
+double cube_share(int far_degree, const Vec3d& place) {
+  const Vec3d sizes = abs(place);
+  const double spread = (sizes.x + sizes.y + sizes.z) / length(place);
+  const auto& share =
+      far_degree == low_far_degree ? CubeRemainder<low_far_degree>::share : CubeRemainder<high_far_degree>::share;
+  for (int i = 0; i < remainder_steps; ++i)
+    if (spread <= static_cast<double>(remainder_spread[i])) return static_cast<double>(share[i]);
+  return 1;
+}
+
+}  // namespace
 
 NearFar::NearFar(int degree, ErrorBudget budget, const BlockKernels& kernels, int far_degree)
     : degree_(degree),
@@ -95,10 +109,10 @@ double NearFar::sum_rounding() const { return 4e-7 * (degree_ + 2); }
 // D the least distance between the cube and the ball of the group. The gradient of the potential sum w tau K loses
 // |sum w tau (q - c)| m (m+1) D^-(m+2) and 1/2 sum w tau |q-c|^2 m (m+1) (m+2) D^-(m+3). To this comes the remainder B5
 // of a point source at c.
-bool NearFar::is_far(const SourceNode& group, double distance, double cube_radius, FarField& far) const {
-  const double clear = distance - cube_radius - group.radius;
+bool NearFar::is_far(const SourceNode& group, const Vec3d& place, double cube_radius, FarField& far) const {
+  const double distance = length(place), clear = distance - cube_radius - group.radius;
   if (cube_radius > largest_ratio * distance || !(clear > 0)) return false;
-  const Remainders r = remainders(group.is_point, cube_radius / distance);
+  const Remainders r = remainders(group.is_point, cube_radius / distance).times(cube_share(far_degree_, place));
   const double m = group.exponent;
   const double bend = m * (m + 1) / integer_power(clear, group.exponent + 2);
   const double raised = 1 / integer_power(distance, group.exponent);
@@ -125,8 +139,7 @@ bool NearFar::is_slight(const SourceNode& group, double distance, double cube_ra
 }
 
 bool NearFar::add_if_far(const SourceNode& group, FarGroups& groups) const {
-  const double d = length(group.center - groups.center);
-  if (!is_far(group, d, groups.half * std::sqrt(3.0), groups.far)) return false;
+  if (!is_far(group, group.center - groups.center, groups.half * std::sqrt(3.0), groups.far)) return false;
   groups.add(group);
   return true;
 }

@@ -60,10 +60,11 @@ class NearFar {
  private:
   struct Remainders {
     double field, gradient;
+    Remainders times(double share) const { return {share * field, share * gradient}; }
   };
   Remainders remainders(bool point, double q) const;
   struct FarGroups;
-  bool is_far(const SourceNode&, double distance, double cube_radius, FarField& far) const;
+  bool is_far(const SourceNode&, const Vec3d& place, double cube_radius, FarField& far) const;
   bool is_slight(const SourceNode&, double distance, double cube_radius, FarField& far) const;
   bool add_if_far(const SourceNode&, FarGroups&) const;
   void fold(const FarGroups&) const;

@@ -129,7 +129,7 @@ TEST(SourceTree, SplitsAreWithinTheirStatedErrors) {
   Random random(63);
   double f_use = 0, g_use = 0;
   std::size_t folded = 0, kept_groups = 0;
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < 200; ++round) {
     const int n = random.whole(3, 7);
     const SourceTree tree = tree_of(clumps(random, n, 400));
     const NearFar near_far(n, budget_of(round % 2 ? 1e-5 : 2e-2, n), *block_kernels(""),
@@ -137,7 +137,7 @@ TEST(SourceTree, SplitsAreWithinTheirStatedErrors) {
     const Vec3d center = random.vector(8);
     const double half = exp(random.between(-4, 1));
     FarField far;
-    const auto near = near_far.split(tree, tree.roots(), center, half, round % 3 ? 0.25 : -1, far);
+    const auto near = near_far.split(tree, tree.roots(), center, half, round % 3 ? 0.5 : -1, far);
     std::vector<bool> is_far(tree.pieces().size(), true);
     for (const SourceRef ref : near) {
       const bool piece = ref.is_piece();

@@ -8,6 +8,20 @@ inline V16 series_tail(V16 q, int exponent, float first) {
   return select(rest > 0.05F, first * power_of(q, FarDegree + 1) / rest, splat(-1));
 }
 
+inline V16 sum_of_sizes(V16 x, V16 y, V16 z) {
+  return larger(x, V16{} - x) + larger(y, V16{} - y) + larger(z, V16{} - z);
+}
+
+// Of the remainder in the ball about a cube, what sources leave in the cube, `sizes` the largest sum of the sizes of
+// their three coordinates, `distance` the least one (cube_remainder.h).
+template <int FarDegree>
+inline V16 cube_share(V16 sizes, V16 distance) {
+  V16 share = splat(1);
+  for (int i = remainder_steps - 1; i >= 0; --i)
+    share = select(sizes <= remainder_spread[i] * distance, splat(CubeRemainder<FarDegree>::share[i]), share);
+  return share;
+}
+
 struct FarLanes {
   V16 far;               // 1 or 0
   V16 f_error, g_error;  // of lanes that are far
@@ -35,8 +49,10 @@ inline FarLanes far_lanes(const float* group, const FarQuery& query) {
   out.gradient = static_cast<float>(m) * out.field * high;
   const V16 f_tail = series_tail<FarDegree>(q, m, query.field_series),
             g_tail = series_tail<FarDegree>(q, m + 1, query.gradient_series);
-  out.f_error = out.field * f_tail;
-  out.g_error = out.gradient * g_tail;
+  const V16 in_cube =
+      cube_share<FarDegree>(larger(sum_of_sizes(wx, wy, wz), sum_of_sizes(wx - ax, wy - ay, wz - az)), d);
+  out.f_error = out.field * f_tail * in_cube;
+  out.g_error = out.gradient * g_tail * in_cube;
   V16 far = select(q <= 0.5F, splat(1), V16{});
   far = select(share > 0.0F, far, V16{});  // an unused lane
   far = select(f_tail >= 0.0F, far, V16{});
