@@ -5,23 +5,20 @@
 #include <span>
 #include <utility>
 
+#include "field/trace/precision.h"
 #include "field/trace/source_emitter.h"
 
 namespace marrow {
 namespace {
-
-// The errors of the coarse level are far above what its polynomials have beyond this degree.
-constexpr int coarse_level_degree = 2;
 
 Level make_level(const Block::Context& context, const NearFar& precision, std::span<const Piece> pieces,
                  const Surroundings& around, const CellTree::Cell& cell, int far_degree,
                  std::vector<PieceRule>* rules = nullptr) {
   SourceEmitter emitter(context.cutter, precision, context.degree, cell.center, cell.half);
   for (const SourceRef ref : around.near) emitter.emit(pieces[ref.index()], ref.index(), rules);
-  Level level{std::move(emitter.curves), std::move(emitter.points), around.far, far_degree};
+  Level level{std::move(emitter.curves), std::move(emitter.points), economized(around.far, far_degree)};
   level.far.f_error += emitter.f_error;
   level.far.gradient_error += emitter.gradient_error;
-  truncate(level.far, far_degree);
   return level;
 }
 
@@ -73,9 +70,8 @@ BlockLevel coarse_level(const Block::Context& context, const CellTree::Cell& cel
 BlockLevel fine_level(const Block::Context& context, const CellTree::Cell& cell, const Allocate& allocate,
                       std::vector<PieceRule>* rules) {
   return write_level(make_level(context, context.fine, context.pieces, context.tree.surroundings(cell), cell,
-                                context.fine.far_degree(), rules),
-                     make_angle_level(context, context.fine, cell, context.fine.far_degree()), Errors::Stated,
-                     allocate);
+                                fine_level_degree, rules),
+                     make_angle_level(context, context.fine, cell, fine_level_degree), Errors::Stated, allocate);
 }
 
 }  // namespace marrow

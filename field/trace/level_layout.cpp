@@ -7,17 +7,9 @@
 namespace marrow {
 namespace {
 
-// (f, Gx, Gy, Gz) for a monomial, where G = gradient of the potential.
-std::array<double, 4> far_coefficients(const FarField& far, std::size_t i) {
-  const Monomial& m = monomials[i];
-  return {far.f[i], far.potential[monomial_index(m.a + 1, m.b, m.c)] * (m.a + 1),
-          far.potential[monomial_index(m.a, m.b + 1, m.c)] * (m.b + 1),
-          far.potential[monomial_index(m.a, m.b, m.c + 1)] * (m.c + 1)};
-}
-
-void write_far(const FarField& far, std::size_t monomial_count, float* out) {
-  for (std::size_t i = 0; i < monomial_count; ++i)
-    for (const double c : far_coefficients(far, i)) *out++ = static_cast<float>(c);
+void write_far(const LevelPolynomials& far, float* out) {
+  for (const auto& monomial : far.coefficients)
+    for (const double c : monomial) *out++ = static_cast<float>(c);
 }
 
 // The largest first derivative and half of the largest second one along any line in the cube, of f and of G. A monomial
@@ -48,27 +40,17 @@ struct FarRange {
 
 }  // namespace
 
-// None of the monomials is above 1 in the cube.
-void truncate(FarField& far, int degree) {
-  for (std::size_t i = monomials_to_degree(degree); i < monomials_to_degree(far.degree); ++i) {
-    const auto c = far_coefficients(far, i);
-    far.f_error += std::fabs(c[0]);
-    far.gradient_error += length({c[1], c[2], c[3]});
-  }
-}
-
 FieldLevel write_field(const Level& level, float* sources) {
   const auto curve_floats = static_cast<std::size_t>(level.curves.group_count() * floats_per_group);
   float* const far = sources + level.source_floats();
   std::copy_n(level.curves.data(), curve_floats, sources);
   std::copy_n(level.points.data(), level.source_floats() - curve_floats, sources + curve_floats);
-  const std::size_t count = monomials_to_degree(level.far_degree);
-  write_far(level.far, count, far);
-  const FarRange range(far, count);
+  write_far(level.far, far);
+  const FarRange range(far, level.far.coefficients.size());
   return {.sources = sources,
           .curve_groups = level.curves.group_count(),
           .point_groups = level.points.group_count(),
-          .far_degree = level.far_degree,
+          .far_degree = level.far.degree,
           .far = far,
           .far_slope = range.slope[0],
           .far_g_slope = FarRange::length(range.slope),

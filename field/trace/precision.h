@@ -24,12 +24,13 @@ inline ErrorBudget budget_of(double tolerance, int degree) {
   return {.field = share, .gradient = share * degree};
 }
 
-/// Below it lists are so short that polynomials are most of the work.
-inline constexpr std::size_t few_pieces = 500;
+/// Degrees to which far sources are gathered, and those of the polynomials that levels evaluate: what is left out is an
+/// error of the level, far below what counts in the coarse one; figures in the README.
+inline constexpr int fine_far_degree = high_far_degree, fine_level_degree = 4, coarse_level_degree = 2;
 
-/// Of the polynomials of the fine level. Of degree 6 they cost 2.4 times as much, and lists are a third shorter:
-/// figures in the README.
-inline int fine_far_degree_for(std::size_t piece_count) {
+/// Below it lists are so short that what the coarse level loses in degrees costs more samples than sources.
+inline constexpr std::size_t few_pieces = 500;
+inline int coarse_far_degree_for(std::size_t piece_count) {
   return piece_count < few_pieces ? low_far_degree : high_far_degree;
 }
 

@@ -5,6 +5,7 @@
 #include <new>
 #include <utility>
 
+#include "field/trace/precision.h"
 #include "field/trace/source_emitter.h"
 #include "field/trace/strand_axes.h"
 
@@ -18,7 +19,7 @@ StrandedLevel make_stranded_level(const Block::Context& context, const CellTree:
   std::sort(near.begin(), near.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::pair(strands.strand_of(a), a) < std::pair(strands.strand_of(b), b);
   });
-  StrandedLevel out{.level = {.curves = {}, .points = {}, .far = around.far, .far_degree = context.fine.far_degree()},
+  StrandedLevel out{.level = {.curves = {}, .points = {}, .far = economized(around.far, fine_level_degree)},
                     .seen = strands.around(*cell.tile, cell.center, cell.half, near),
                     .groups = {},
                     .directions = {}};

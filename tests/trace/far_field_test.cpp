@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "field/skeleton/skeletons.h"
+#include "field/trace/level_polynomials.h"
 #include "tests/trace/stage.h"
 
 namespace marrow::test {
@@ -145,6 +146,51 @@ TEST(FarField, BoundsContainTheField) {
       }
     }
   }
+}
+
+FarValue value_of(const LevelPolynomials& far, const Vec3d& x) {
+  FarValue v;
+  for (std::size_t i = 0; i < far.coefficients.size(); ++i) {
+    const Monomial& m = monomials[i];
+    const double power = integer_power(x.x, m.a) * integer_power(x.y, m.b) * integer_power(x.z, m.c);
+    v.f += far.coefficients[i][0] * power;
+    v.g += Vec3d{far.coefficients[i][1], far.coefficients[i][2], far.coefficients[i][3]} * power;
+  }
+  return v;
+}
+
+// What leaving out monomials would cost.
+double truncation_error(const FarField& far, int degree) {
+  double sum = 0;
+  for (std::size_t i = monomials_to_degree(degree); i < monomials_to_degree(far.degree); ++i)
+    sum += std::fabs(far.f[i]);
+  return sum;
+}
+
+TEST(FarField, OfALowerDegreeIsWithinItsStatedError) {
+  Random random(44);
+  double use = 0, saved = 1;
+  for (int i = 0; i < 300; ++i) {
+    const Split s = random_split(random, random.whole(3, 7), 1e-5, far_degree(i));
+    if (s.far_pieces.empty()) continue;
+    const int degree = s.far.degree == high_far_degree && i % 3 != 0 ? 4 : 2;
+    const LevelPolynomials low = economized(s.far, degree);
+    ASSERT_EQ(low.coefficients.size(), monomials_to_degree(degree));
+    const double f_allowed = low.f_error - s.far.f_error, g_allowed = low.gradient_error - s.far.gradient_error;
+    for (int k = 0; k < 40; ++k) {
+      Vec3d x = random.vector(1);
+      if (k % 2 == 0) x = x / max_component(abs(x));  // on a face
+      const FarValue whole = value_of(s.far, x), part = value_of(low, x);
+      ASSERT_LE(std::fabs(whole.f - part.f), f_allowed + 1e-14 * whole.f);
+      ASSERT_LE(length(whole.g - part.g), g_allowed + 1e-13 * (whole.f + length(whole.g)));
+      if (f_allowed > 0) use = std::max(use, std::fabs(whole.f - part.f) / f_allowed);
+    }
+    saved = std::min(saved, f_allowed / truncation_error(s.far, degree));
+  }
+  std::cout << "  largest difference over what is stated " << use << ", that over a truncation's at best " << saved
+            << '\n';
+  EXPECT_GT(use, 0.3);
+  EXPECT_LT(saved, 0.25);
 }
 
 }  // namespace

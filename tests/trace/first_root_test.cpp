@@ -49,7 +49,7 @@ struct Tally {
 class Judge {
  public:
   explicit Judge(const BlendField& field, std::optional<int> far_degree = {})
-      : field_(field), oracle_(field_), cells_(field, {.instruction_set = "", .far_degree = far_degree}) {}
+      : field_(field), oracle_(field_), cells_(field, {.instruction_set = "", .coarse_far_degree = far_degree}) {}
 
   std::optional<double> check(Ray ray) {
     ++tally.rays;
