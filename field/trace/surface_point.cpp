@@ -130,9 +130,9 @@ class PlacesAlong {
   }
 
  private:
-  // A block's errors are stated for its cube; those of what it does not list are bounded in the ball around the cube.
-  // Those of Gauss-Legendre rules grow with d^-(n + 2 m + 1): off the cube by a hundredth of the distance at most 1.6
-  // times (n = 20, m = 12 nodes), and margins count errors twice.
+  // A block's errors are stated for its cube. Off it by a hundredth of the distance those of Gauss-Legendre rules grow
+  // with d^-(n + 2 m + 1), at most 1.7 times (n = 20, m = 16 nodes), those of polynomials at most as T_6(1.005), 1.2
+  // times, and margins count errors twice.
   static bool is_certified(const Vec3d& place, double nearest) {
     const double most = 1 + 0.005 * std::min(nearest, 1.0);  // along each axis: together less than 0.01
     for (std::size_t k = 0; k < 3; ++k)
