@@ -43,6 +43,7 @@ std::optional<CellHit> BlendTracer::first_hit(std::size_t tile, const Ray& ray, 
   log.side = CellLog::Side::Unknown;
   if (!(enter < exit)) return {};
   const auto hit = hit_in(made, ray, any, enter, exit, log);
+  if (any && is_at_end(hit, ray)) return first_hit(tile, ray, false, log);
   return hit && hit->t <= ray.t_max ? hit : std::nullopt;
 }
 
@@ -101,8 +102,8 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
   log.undecided = std::min(log.undecided, cube.to_world(root.undecided));
   if (!root.hit) return {};
   const double t = std::max(cube.to_world(root.t), ray.t_min);
-  // Where a ray from outside ends inside, what is met may be its end, which as a float can lie behind it.
-  return CellHit{any && !query.leaving ? std::min(t, exit) : t, &b};
+  const bool ends = any && !query.leaving && t > ray.t_max - nearly_ended * b.half();
+  return CellHit{ends ? ray.t_max : t, &b};
 }
 
 TraceStatistics BlendTracer::statistics() const {

@@ -125,8 +125,8 @@ class BlendTracer {
 
   /// The first place inside a tile where the ray comes to the surface: from outside, or, for a ray that begins inside,
   /// where it leaves. A ray that begins within rounding of the surface counts as outside. t in [ray.t_min, ray.t_max];
-  /// t does not depend on ray.t_max. With `any`, any root, or
-  /// what is inside already.
+  /// t does not depend on ray.t_max. With `any`, any root, or what is inside already; a ray from outside has one where
+  /// it has a first hit.
   std::optional<CellHit> first_hit(std::size_t tile, const Ray&, bool any, CellLog&) const;
   /// What tiles have been divided into so far, less what is known to hold no surface. Answers stay good.
   std::vector<TracePart> parts() const;

@@ -96,4 +96,7 @@ struct BlendTracer::State {
   }
 };
 
+/// Whether any hit may as well lie behind the end of the ray: then the first one tells.
+inline bool is_at_end(const std::optional<CellHit>& any, const Ray& ray) { return any && any->t == ray.t_max; }
+
 }  // namespace marrow

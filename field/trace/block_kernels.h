@@ -163,6 +163,11 @@ struct CellRoots {
 /// Gaps along a ray shorter than this times the distance to the nearest source are not decided.
 inline constexpr float shortest_gap = 2e-5F;
 
+/// In half sides: any root, as told by a place inside, this near to the end of the ray is given as that end, for the
+/// first root may lie before it or behind. Roots are off by shortest_gap times a distance of some diagonals, and ends
+/// as floats by less.
+inline constexpr double nearly_ended = 0x1p-12;
+
 /// In the coordinates of a block.
 struct PlacesInLanes {
   alignas(64) float at[3][lanes] = {};

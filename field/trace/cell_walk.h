@@ -12,12 +12,12 @@
 
 namespace marrow {
 
-/// Where a ray is in the box around all that a tile of the first level holds; of one that is to meet `any` surface, up
-/// to its end. Empty: it is not.
+/// Where a ray is in the box around all that a tile of the first level holds; of one that is to meet `any` surface, to
+/// just behind its end. Empty: it is not.
 inline std::pair<double, double> clip_to_tile(const Tile& tile, const Ray& ray, bool any) {
   const Vec3d& direction = ray.direction;
   auto [enter, exit] = clip(tile.content_box(), ray, {1 / direction.x, 1 / direction.y, 1 / direction.z});
-  return {enter, any ? std::min(exit, ray.t_max) : exit};
+  return {enter, any ? std::min(exit, ray.t_max + nearly_ended * tile.place().half) : exit};
 }
 
 /// A cell of a tile, and where the ray is in it.

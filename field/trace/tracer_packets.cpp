@@ -136,7 +136,8 @@ void BlendTracer::first_hits(std::span<const PartRays> parts, const RayPacket& p
   const auto take = [&](const Block& block, std::size_t part, const LaneSet& rays) {
     rays.for_each([&](std::size_t i) {
       const CellRoots& roots = group.roots;
-      if (roots.enters_inside.has(i)) return alone(parts[part].part, i);  // it may begin inside
+      const bool at_end = any && roots.hit.has(i) && roots.t[i] == packet.t_max[i];
+      if (at_end || roots.enters_inside.has(i)) return alone(parts[part].part, i);  // it may begin inside
       out.log[i].enter = roots.enter[i];
       add_to(out.log[i], roots, i);
       out.log[i].outside_from = roots.outside_from[i];
@@ -192,6 +193,11 @@ void BlendTracer::first_hits(std::size_t tile, const RayPacket& packet, const La
     const LaneSet here = open;
     here.for_each(go_on);
   }
+  if (!any) return;
+  rays.for_each([&](std::size_t i) {
+    if (out.hit[i].block == nullptr || out.hit[i].t < packet.t_max[i]) return;
+    out.hit[i] = first_hit(tile, packet.ray(i), false, out.log[i]).value_or(CellHit{});
+  });
 }
 
 // Returns which rays meet the surface in the cells where they are.

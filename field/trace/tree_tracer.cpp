@@ -127,12 +127,15 @@ std::optional<TreeHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, b
   const Cell& c = cells_[cell];
   Interval t = clip(c.box, ray);
   log.enter = t.lo;
-  if (any) t.hi = std::min(t.hi, ray.t_max);
+  const double nearly_ended = 0x1p-30 * std::max(std::fabs(t.lo), max_component(abs(ray.origin)));  // gaps are shorter
+  if (any) t.hi = std::min(t.hi, ray.t_max + nearly_ended);
   Ray onward = ray;
   while (t.lo <= t.hi) {
     // Any crossing is told by a place behind it: not what is_covered() asks for.
     CellSearch search(onward, any && members_.empty(), log);
     const auto hit = c.part != nullptr ? search.in(*c.part, t) : search.in(tree_, c.member, t, nullptr);
+    // Where any crossing may lie behind the end of the ray, the first one tells.
+    if (any && hit && hit->t > ray.t_max - nearly_ended) return first_hit(cell, ray, false, log);
     if (!hit || hit->t > ray.t_max) return {};
     if (members_.empty() || !(is_covered(c.member, ray, hit->t) || is_joint(c.member, ray, hit->t))) return hit;
     onward.t_min = t.lo = std::max(hit->t, std::nextafter(t.lo, Box3::inf));

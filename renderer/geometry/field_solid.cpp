@@ -114,7 +114,7 @@ std::optional<double> FieldSolid::traced(const Place& place, const Ray& ray, boo
   to_world(cell, stretch, before, log);
   if (!found) return {};
   const double t = std::max(ray.t_min, found->t / stretch);
-  if (!any && t > ray.t_max) return {};
+  if (t > ray.t_max) return {};
   log.place = found->block;
   return t;
 }
@@ -155,7 +155,7 @@ void FieldSolid::hits_in_parts(std::span<const LanesInPart> parts, const RayPack
       const CellHit& hit = b.cells.hit[i];
       log.lanes[i].place = hit.block;
       const double t = std::max(packet.t_min[i], in_world_ ? hit.t : hit.t / b.stretch[i]);
-      const bool met = hit.block != nullptr && (any || t <= packet.t_max[i]);
+      const bool met = hit.block != nullptr && t <= packet.t_max[i];
       log.t[i] = met ? t : std::numeric_limits<double>::infinity();
     });
 }

@@ -120,7 +120,7 @@ struct Entry {
   Entry(const CellPlace& cell, const SomeRays& ray, bool any_root) {
     DoubleMask misses;
     stretch = ray.in_box(cell.box_lower, cell.box_upper, misses);
-    if (any_root) stretch.exit = first_min(stretch.exit, ray.t_max);
+    if (any_root) stretch.exit = first_min(stretch.exit, ray.t_max + nearly_ended * cell.tiles[0].half);
     DoubleMask in = (stretch.enter < stretch.exit) & ~misses;
     for (int i = 0; i < cell.tile_count; ++i) in &= narrow(cell.tiles[i], ray);
     entered = bits_of_mask(in);
@@ -197,7 +197,7 @@ inline void leave_blocks(const Frames& frames, const PacketView& rays, const Lan
     const RaysInCube<Doubles> block = frames.of(ray, first);
     const Doubles exit = load(out.exit + first), enter = load(out.enter + first);
     Doubles at = first_max(block.to_world(load_floats(roots.t + first)), ray.t_min);
-    if (any_root) at = first_min(at, exit);
+    if (any_root) at = at > ray.t_max - nearly_ended * block.half ? ray.t_max : at;
     store(at, out.t + first);
     store(block.to_world(load_floats(roots.undecided + first)), out.undecided + first);
     store(block.to_world(load_floats(roots.searched_from + first)), out.searched_from + first);
