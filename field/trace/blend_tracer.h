@@ -43,8 +43,8 @@ struct TraceOptions {
   std::size_t recipe_bytes = std::size_t{3} << 28;
   /// Empty: by the number of primitives.
   std::optional<CellTreeSettings> cells{};
-  /// To which far sources of the coarse level are gathered, 4 or 6; empty: by the number of pieces.
-  std::optional<int> coarse_far_degree{};
+  /// To which far sources of the two levels are gathered, 4, 6 or 8; empty: by the number of pieces.
+  std::optional<int> coarse_far_degree{}, fine_far_degree{};
   /// As in CellTreeSettings; may be completed until the first ray comes.
   std::shared_ptr<const RaySpacing> spacing{};
 };

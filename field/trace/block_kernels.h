@@ -46,7 +46,7 @@ struct FieldLevel {
   const float* sources = nullptr;        ///< curve groups, then point groups; 64-byte aligned
   int curve_groups = 0;                  ///< of exponent m = degree
   int point_groups = 0;                  ///< of exponent m = degree - 1
-  int far_degree = 4;                    ///< of the polynomials: 2 or 4
+  int far_degree = 4;                    ///< of the polynomials: one of evaluated_degrees
   const float* far = nullptr;            ///< (f, Gx, Gy, Gz) for each monomial
   float f_error = 0, g_error = 0;        ///< added to f and |G| wherever "outside" is to be proved
   float far_slope = 0, far_g_slope = 0;  ///< |derivative| of the far f and G along any line, at most
@@ -207,7 +207,7 @@ struct StrandShares {
 };
 inline constexpr int floats_per_strand = 20 * lanes;  ///< of the memory that it takes
 
-inline constexpr int most_far_moments = 200;  ///< see MomentTable: 200 of degree 6, 80 of degree 4
+inline constexpr int most_far_moments = 424;  ///< see MomentTable: 80, 200, 420 of degree 4, 6, 8, in eights
 inline constexpr int most_far_nodes = 5;
 
 inline constexpr int floats_per_piece_group = 13 * lanes;
@@ -245,7 +245,7 @@ struct FarQuery {
   int exponent;
   bool points;
   float field_budget, gradient_budget;  ///< the errors that one piece may cause
-  int far_degree;                       ///< P of far_field.h: 4 or 6
+  int far_degree;                       ///< P of far_field.h
   int most_nodes;                       ///< of a far piece
   float field_series, gradient_series;  ///< binom(exponent + P, P + 1), binom(exponent + P + 1, P + 1)
   float field_rule[most_far_nodes + 1] = {}, gradient_rule[most_far_nodes + 1] = {};  ///< constants of GaussError

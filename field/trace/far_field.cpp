@@ -9,7 +9,7 @@
 namespace marrow {
 namespace {
 
-constexpr int highest_degree = high_far_degree + 1;
+constexpr int highest_degree = highest_far_degree + 1;
 
 constexpr std::array<Monomial, monomial_count> make_monomials() {
   std::array<Monomial, monomial_count> m{};

@@ -1,4 +1,4 @@
-// What lies far from a cube, as Taylor polynomials about its centre: the field f (degree P = 4 or 6), and the
+// What lies far from a cube, as Taylor polynomials about its centre: the field f (degree P = 4, 6 or 8), and the
 // potential F with grad F = grad_S f (degree P + 1, so that grad_S f has degree P too).
 //
 // Coordinates are the cube's own: x = (p - centre) / half, so the cube is [-1, 1]^3. All lengths that
@@ -18,8 +18,8 @@ namespace marrow {
 /// Monomials of degree <= k in three variables: binom(k + 3, 3).
 constexpr std::size_t monomials_to_degree(int k) { return static_cast<std::size_t>((k + 1) * (k + 2) * (k + 3) / 6); }
 
-inline constexpr int low_far_degree = 4, high_far_degree = 6;                            ///< P
-inline constexpr std::size_t monomial_count = monomials_to_degree(high_far_degree + 1);  // 120
+inline constexpr int low_far_degree = 4, high_far_degree = 6, highest_far_degree = 8;       ///< P
+inline constexpr std::size_t monomial_count = monomials_to_degree(highest_far_degree + 1);  // 220
 
 /// Exponents of the monomials x^a y^b z^c, sorted by degree.
 struct Monomial {

@@ -6,7 +6,7 @@
 namespace marrow {
 namespace {
 
-constexpr std::size_t gathered_monomials = monomials_to_degree(high_far_degree);
+constexpr std::size_t gathered_monomials = monomials_to_degree(highest_far_degree);
 
 // The coefficient of x^(e-2j) in T_e(x): (-1)^j e/(2 (e-j)) binom(e-j, j) 2^(e-2j).
 double chebyshev_coefficient(int e, int j) {
@@ -51,23 +51,46 @@ std::array<double, 4> coefficients(const FarField& far, std::size_t i) {
           far.potential[monomial_index(m.a, m.b, m.c + 1)] * (m.c + 1)};
 }
 
+// On the way from one degree to the next.
+struct Shortened {
+  std::array<std::array<double, 4>, gathered_monomials> c;
+  double f_error = 0, gradient_error = 0;  // of what was left out
+
+  explicit Shortened(const FarField& far) {
+    for (std::size_t i = 0; i < gathered_monomials; ++i) c[i] = coefficients(far, i);
+  }
+  // Rests of the highest degrees first, as they may be left out in their turn.
+  void shorten(int from, int to) {
+    for (std::size_t i = monomials_to_degree(from); i-- > monomials_to_degree(to);) {
+      const Reduced& r = reduced(i);
+      f_error += r.multiple * std::fabs(c[i][0]);
+      gradient_error += r.multiple * length({c[i][1], c[i][2], c[i][3]});
+      for (const Reduced::Term& t : r.rest)
+        for (std::size_t k = 0; k < 4; ++k) c[t.monomial][k] += t.factor * c[i][k];
+    }
+  }
+  bool is_within(const Economy& allowed) const { return f_error <= allowed.f && gradient_error <= allowed.gradient; }
+};
+
 }  // namespace
 
-// Rests of the highest degrees first, as they may be left out in their turn.
-LevelPolynomials economized(const FarField& far, int degree) {
-  std::array<std::array<double, 4>, gathered_monomials> c;
-  for (std::size_t i = 0; i < gathered_monomials; ++i) c[i] = coefficients(far, i);
-  LevelPolynomials out{
-      .degree = degree, .coefficients = {}, .f_error = far.f_error, .gradient_error = far.gradient_error};
-  const std::size_t kept = monomials_to_degree(degree);
-  for (std::size_t i = monomials_to_degree(far.degree); i-- > kept;) {
-    const Reduced& r = reduced(i);
-    out.f_error += r.multiple * std::fabs(c[i][0]);
-    out.gradient_error += r.multiple * length({c[i][1], c[i][2], c[i][3]});
-    for (const Reduced::Term& t : r.rest)
-      for (std::size_t k = 0; k < 4; ++k) c[t.monomial][k] += t.factor * c[i][k];
+LevelPolynomials economized(const FarField& far, int most, const Economy& allowed) {
+  Shortened kept(far);
+  kept.shorten(far.degree, most);
+  int degree = most;
+  for (auto lower = evaluated_degrees.rbegin(); lower != evaluated_degrees.rend(); ++lower) {
+    if (*lower >= most) continue;
+    Shortened shorter = kept;
+    shorter.shorten(degree, *lower);
+    if (!shorter.is_within(allowed)) break;
+    kept = shorter;
+    degree = *lower;
   }
-  out.coefficients.assign(c.begin(), c.begin() + static_cast<std::ptrdiff_t>(kept));
+  LevelPolynomials out{.degree = degree,
+                       .coefficients = {},
+                       .f_error = far.f_error + kept.f_error,
+                       .gradient_error = far.gradient_error + kept.gradient_error};
+  out.coefficients.assign(kept.c.begin(), kept.c.begin() + static_cast<std::ptrdiff_t>(monomials_to_degree(degree)));
   return out;
 }
 

@@ -14,10 +14,19 @@ struct LevelPolynomials {
   double f_error = 0, gradient_error = 0;           ///< as in FarField
 };
 
+/// What kernels evaluate.
+inline constexpr std::array<int, 3> evaluated_degrees{2, 4, 5};
+
+/// What polynomials may leave out to be of a lower degree.
+struct Economy {
+  double f = 0, gradient = 0;
+};
+
 /// Chebyshev's economy: what is left out of x^a y^b z^c is not the monomial but the largest multiple of
 /// T_a(x) T_b(y) T_c(z) in it, 2^(1-a) 2^(1-b) 2^(1-c) (1 for an exponent of 0), which is at most as large as that in
-/// the cube; the rest is of lower degrees. So polynomials of degree 4 are nearly as good as those of degree 6 that they
-/// come from, at two fifths of the cost. What is left out counts as an error.
-LevelPolynomials economized(const FarField&, int degree);
+/// the cube; the rest is of lower degrees. So polynomials of degree 5 are nearly as good as those of degree 8 that they
+/// come from, at a third of the cost. What is left out counts as an error. Of the evaluated degrees up to `most` the
+/// lowest is taken for which that is within `allowed`; `most` itself whatever it leaves out.
+LevelPolynomials economized(const FarField&, int most, const Economy& allowed = {});
 
 }  // namespace marrow

@@ -15,8 +15,9 @@ namespace {
 double cube_share(int far_degree, const Vec3d& place) {
   const Vec3d sizes = abs(place);
   const double spread = (sizes.x + sizes.y + sizes.z) / length(place);
-  const auto& share =
-      far_degree == low_far_degree ? CubeRemainder<low_far_degree>::share : CubeRemainder<high_far_degree>::share;
+  const auto& share = far_degree == low_far_degree    ? CubeRemainder<low_far_degree>::share
+                      : far_degree == high_far_degree ? CubeRemainder<high_far_degree>::share
+                                                      : CubeRemainder<highest_far_degree>::share;
   for (int i = 0; i < remainder_steps; ++i)
     if (spread <= static_cast<double>(remainder_spread[i])) return static_cast<double>(share[i]);
   return 1;

@@ -35,9 +35,10 @@ struct ErrorBudget {
 /// group that stands for its pieces the second moments that its centre of mass neglects.
 class NearFar {
  public:
-  /// `far_degree`: of the polynomials, low_far_degree or high_far_degree.
+  /// `far_degree`: of the polynomials, low_far_degree, high_far_degree or highest_far_degree.
   NearFar(int degree, ErrorBudget, const BlockKernels&, int far_degree);
   int far_degree() const { return far_degree_; }
+  const ErrorBudget& budget() const { return budget_; }
 
   /// Adds the far ones of `candidates` to `far` (in the coordinates of the cube) and returns the near ones: curves,
   /// then points, in their order.

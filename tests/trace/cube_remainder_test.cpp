@@ -81,6 +81,7 @@ void expect_shares_to_hold(unsigned seed) {
 TEST(CubeRemainder, HoldsInTheWholeCube) {
   expect_shares_to_hold<low_far_degree>(61);
   expect_shares_to_hold<high_far_degree>(62);
+  expect_shares_to_hold<highest_far_degree>(63);
 }
 
 }  // namespace

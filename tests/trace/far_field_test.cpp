@@ -2,6 +2,7 @@
 #include "field/trace/far_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -62,7 +63,10 @@ struct Split {
   FarField far;
 };
 
-int far_degree(int round) { return round % 2 ? low_far_degree : high_far_degree; }
+int far_degree(int round) {
+  constexpr int degrees[] = {high_far_degree, low_far_degree, highest_far_degree};
+  return degrees[round % 3];
+}
 
 // A random blend seen from a small cube, with the budget of the fine level or a hundred times that.
 Split random_split(Random& random, int degree, double tolerance, int far_degree) {
@@ -173,7 +177,7 @@ TEST(FarField, OfALowerDegreeIsWithinItsStatedError) {
   for (int i = 0; i < 300; ++i) {
     const Split s = random_split(random, random.whole(3, 7), 1e-5, far_degree(i));
     if (s.far_pieces.empty()) continue;
-    const int degree = s.far.degree == high_far_degree && i % 3 != 0 ? 4 : 2;
+    const int degree = s.far.degree == low_far_degree ? 2 : evaluated_degrees[static_cast<std::size_t>(i / 3 % 3)];
     const LevelPolynomials low = economized(s.far, degree);
     ASSERT_EQ(low.coefficients.size(), monomials_to_degree(degree));
     const double f_allowed = low.f_error - s.far.f_error, g_allowed = low.gradient_error - s.far.gradient_error;
@@ -191,6 +195,27 @@ TEST(FarField, OfALowerDegreeIsWithinItsStatedError) {
             << '\n';
   EXPECT_GT(use, 0.3);
   EXPECT_LT(saved, 0.25);
+}
+
+TEST(FarField, TakesTheLowestDegreeThatIsWithinTheEconomy) {
+  Random random(45);
+  std::array<int, evaluated_degrees.size()> taken{};
+  for (int i = 0; i < 300; ++i) {
+    const Split s = random_split(random, random.whole(3, 7), 1e-5, i % 2 ? high_far_degree : highest_far_degree);
+    if (s.far_pieces.empty()) continue;
+    const Economy allowed{exp(random.between(-16, -4)), exp(random.between(-14, -2))};
+    const auto is_within = [&](int degree) {
+      const LevelPolynomials all = economized(s.far, degree);
+      return all.f_error - s.far.f_error <= allowed.f && all.gradient_error - s.far.gradient_error <= allowed.gradient;
+    };
+    std::size_t expected = 0;
+    while (expected + 1 < evaluated_degrees.size() && !is_within(evaluated_degrees[expected])) ++expected;
+    const LevelPolynomials found = economized(s.far, evaluated_degrees.back(), allowed);
+    ASSERT_EQ(found.degree, evaluated_degrees[expected]);
+    ASSERT_EQ(found.coefficients, economized(s.far, found.degree).coefficients);
+    ++taken[expected];
+  }
+  for (const int times : taken) EXPECT_GT(times, 10);
 }
 
 }  // namespace

@@ -48,8 +48,10 @@ struct Tally {
 
 class Judge {
  public:
-  explicit Judge(const BlendField& field, std::optional<int> far_degree = {})
-      : field_(field), oracle_(field_), cells_(field, {.instruction_set = "", .coarse_far_degree = far_degree}) {}
+  explicit Judge(const BlendField& field, std::optional<int> coarse = {}, std::optional<int> fine = {})
+      : field_(field),
+        oracle_(field_),
+        cells_(field, {.instruction_set = "", .coarse_far_degree = coarse, .fine_far_degree = fine}) {}
 
   std::optional<double> check(Ray ray) {
     ++tally.rays;
@@ -121,8 +123,9 @@ TEST(FirstRoot, AgreesWithTheOracle) {
   Random random(71);
   Tally all;
   for (const Setting& s : settings()) {
-    const int far_degree = random.whole(0, 1) == 0 ? low_far_degree : high_far_degree;
-    Judge judge(random_scene(random, s, random.whole(2, 12)), far_degree);
+    const int coarse = random.whole(0, 1) == 0 ? low_far_degree : high_far_degree;
+    const int fine = coarse == low_far_degree ? highest_far_degree : high_far_degree;
+    Judge judge(random_scene(random, s, random.whole(2, 12)), coarse, fine);
     for (int i = 0; i < 240; ++i) judge.check(any_ray(random, judge.field()));
     expect_clean(judge, s);
     all.add(judge.tally);
@@ -137,8 +140,9 @@ TEST(FirstRoot, AgreesWithTheOracleAtSilhouettes) {
   Random random(72);
   Tally all;
   for (const Setting& s : settings()) {
-    const int far_degree = random.whole(0, 1) == 0 ? low_far_degree : high_far_degree;
-    Judge judge(random_scene(random, s, random.whole(2, 7)), far_degree);
+    const int coarse = random.whole(0, 1) == 0 ? low_far_degree : high_far_degree;
+    const int fine = coarse == low_far_degree ? highest_far_degree : high_far_degree;
+    Judge judge(random_scene(random, s, random.whole(2, 7)), coarse, fine);
     for (int i = 0; i < 7; ++i) {
       const Vec3d eye = random_direction(random) * 6;
       Vec3d hit = random.vector(1.2), miss = random.vector(3);

@@ -126,14 +126,14 @@ FieldValue value_of(const FarField& far, const Vec3d& x) {
 
 // What a split folds away is what it leaves out of the list, to the error it states; groups and pieces alike.
 TEST(SourceTree, SplitsAreWithinTheirStatedErrors) {
+  constexpr int far_degrees[] = {high_far_degree, low_far_degree, highest_far_degree};
   Random random(63);
   double f_use = 0, g_use = 0;
   std::size_t folded = 0, kept_groups = 0;
   for (int round = 0; round < 200; ++round) {
     const int n = random.whole(3, 7);
     const SourceTree tree = tree_of(clumps(random, n, 400));
-    const NearFar near_far(n, budget_of(round % 2 ? 1e-5 : 2e-2, n), *block_kernels(""),
-                           round / 2 % 2 ? low_far_degree : high_far_degree);
+    const NearFar near_far(n, budget_of(round % 2 ? 1e-5 : 2e-2, n), *block_kernels(""), far_degrees[round / 2 % 3]);
     const Vec3d center = random.vector(8);
     const double half = exp(random.between(-4, 1));
     FarField far;

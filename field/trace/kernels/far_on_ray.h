@@ -45,7 +45,8 @@ inline auto nested_polynomial(const Far& far, const X& x, const Y& y, const Z& z
 // The degrees that levels have.
 template <class Far, class X, class Y, class Z>
 inline auto far_polynomial(const FieldLevel& level, const Far& far, const X& x, const Y& y, const Z& z) {
-  return level.far_degree == 2 ? nested_polynomial<2>(far, x, y, z) : nested_polynomial<4>(far, x, y, z);
+  if (level.far_degree == 2) return nested_polynomial<2>(far, x, y, z);
+  return level.far_degree == 4 ? nested_polynomial<4>(far, x, y, z) : nested_polynomial<5>(far, x, y, z);
 }
 
 // (f, Gx, Gy, Gz) of the far field at a point.

@@ -38,8 +38,8 @@ inline void accumulate_moments(const V16 (&power)[Monomials], V16 field, V16 squ
 
 template <int FarDegree>
 struct MomentSums {
-  static constexpr int degree = FarDegree + 1, count = moments_to(degree);
-  static_assert(count <= most_far_moments && count % 8 == 0);
+  static constexpr int degree = FarDegree + 1, count = (moments_to(degree) + 7) / 8 * 8;
+  static_assert(count <= most_far_moments);
   V16 f[count] = {}, potential[count] = {};
 
   // One inverted source in each lane.
@@ -72,7 +72,8 @@ inline void sum_moments(const float* group, int groups, float* f_out, float* pot
 
 void far_moments(const float* groups, int count, int far_degree, float* f_out, float* potential_out) {
   if (far_degree == 4) sum_moments<4>(groups, count, f_out, potential_out);
-  else sum_moments<6>(groups, count, f_out, potential_out);
+  else if (far_degree == 6) sum_moments<6>(groups, count, f_out, potential_out);
+  else sum_moments<8>(groups, count, f_out, potential_out);
 }
 
 // One kind of pieces (one exponent) against one ball. Distances are lowered and raised by what rounding can do to

@@ -190,5 +190,6 @@ inline void split_to_degree(const float* groups, int count, const FarQuery& quer
 
 void far_split(const float* groups, int count, const FarQuery& query, unsigned short* near, FarSums& out) {
   if (query.far_degree == 4) split_to_degree<4>(groups, count, query, near, out);
-  else split_to_degree<6>(groups, count, query, near, out);
+  else if (query.far_degree == 6) split_to_degree<6>(groups, count, query, near, out);
+  else split_to_degree<8>(groups, count, query, near, out);
 }
