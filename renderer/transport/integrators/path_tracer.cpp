@@ -76,11 +76,18 @@ struct AskedLight {
   Rgb radiance;
 };
 
+// Lights of a single direction draw none.
+Sample2 numbers_for(const Light& light, Sampler& sampler) {
+  if (light.can_be_met()) return sampler.next_2d();
+  sampler.skip_2d();
+  return {};
+}
+
 // Asks one light, picked at random; nothing when no light can come.
 std::optional<AskedLight> asked_light(const RenderScene& scene, const Vertex& at, Sampler& sampler, Strategy strategy) {
   if (scene.lights.empty()) return {};
   const LightSet::Pick pick = scene.lights.pick(scene.lights.size() == 1 ? 0 : sampler.next_1d());
-  const auto light = pick.light->sample(at.receiver, sampler.next_2d());
+  const auto light = pick.light->sample(at.receiver, numbers_for(*pick.light, sampler));
   if (!light || is_black(light->radiance)) return {};
   if (strategy == Strategy::SurfacesOnly && !light->delta) return {};
   const Scattered scattered = at.bsdf.evaluate(at.wo, at.to_local(light->wi));

@@ -72,6 +72,8 @@ class Sampler {
         reverse_bits(scramble_reversed(sobol_second_reversed(index), std::uint32_t(scrambles >> 32)));
     return {unit(x), unit(y)};
   }
+  /// Instead of next_2d(), where nobody looks at the numbers: those that follow are the same.
+  void skip_2d() { ++pair_; }
   double next_1d() {
     const std::uint64_t order = mix_bits(pixel_ + ++pair_ * golden);
     const std::uint32_t index = reverse_bits(scramble_reversed(reversed_index_, std::uint32_t(order)));
