@@ -43,7 +43,7 @@ std::optional<CellHit> BlendTracer::first_hit(std::size_t tile, const Ray& ray, 
   log.side = CellLog::Side::Unknown;
   if (!(enter < exit)) return {};
   const auto hit = hit_in(made, ray, any, enter, exit, log);
-  if (any && is_at_end(hit, ray)) return first_hit(tile, ray, false, log);
+  if (any && hit && is_at_end(*hit, ray.t_max)) return first_hit(tile, ray, false, log);
   return hit && hit->t <= ray.t_max ? hit : std::nullopt;
 }
 

@@ -97,7 +97,7 @@ struct BlendTracer::State {
   }
 };
 
-/// Whether any hit may as well lie behind the end of the ray: then the first one tells.
-inline bool is_at_end(const std::optional<CellHit>& any, const Ray& ray) { return any && any->t == ray.t_max; }
+/// Whether any hit, if there is one, may as well lie behind the end of its ray: then the first one tells.
+inline bool is_at_end(const CellHit& any, double t_max) { return any.block != nullptr && any.t == t_max; }
 
 }  // namespace marrow

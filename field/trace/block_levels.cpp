@@ -11,20 +11,12 @@
 namespace marrow {
 namespace {
 
-// How far sources become polynomials.
-struct Evaluated {
-  int most;  // of their degrees
-  Economy economy{};
-};
-Evaluated fine_polynomials(const NearFar& fine) { return {fine_level_degree(fine.far_degree()), fine_economy(fine)}; }
-
 Level make_level(const Block::Context& context, const NearFar& precision, std::span<const Piece> pieces,
-                 const Surroundings& around, const CellTree::Cell& cell, const Evaluated& polynomials,
+                 const Surroundings& around, const CellTree::Cell& cell, const Economy& economy,
                  std::vector<PieceRule>* rules = nullptr) {
   SourceEmitter emitter(context.cutter, precision, context.degree, cell.center, cell.half);
   for (const SourceRef ref : around.near) emitter.emit(pieces[ref.index()], ref.index(), rules);
-  Level level{std::move(emitter.curves), std::move(emitter.points),
-              economized(around.far, polynomials.most, polynomials.economy)};
+  Level level{std::move(emitter.curves), std::move(emitter.points), economized(around.far, economy)};
   level.far.f_error += emitter.f_error;
   level.far.gradient_error += emitter.gradient_error;
   return level;
@@ -32,12 +24,12 @@ Level make_level(const Block::Context& context, const NearFar& precision, std::s
 
 // The field of angles, at the same errors, from its own tree; nothing where alpha is constant.
 std::optional<Level> make_angle_level(const Block::Context& context, const NearFar& precision,
-                                      const CellTree::Cell& cell, const Evaluated& polynomials) {
+                                      const CellTree::Cell& cell, const Economy& economy) {
   if (context.angle == nullptr) return {};
   constexpr double open_all = NearFar::open_all;
   Surroundings s;
   s.near = precision.split(*context.angle, context.angle->roots(), cell.center, cell.half, open_all, s.far);
-  return make_level(context, precision, context.angle->pieces(), s, cell, polynomials);
+  return make_level(context, precision, context.angle->pieces(), s, cell, economy);
 }
 
 // Whether the errors count wherever "outside" is to be proved, or are only stated.
@@ -72,16 +64,16 @@ BlockLevel coarse_level(const Block::Context& context, const CellTree::Cell& cel
                         std::vector<PieceRule>* rules) {
   const NearFar& coarse = context.coarse;
   const Surroundings around = context.tree.coarse_surroundings(cell);
-  return write_level(make_level(context, coarse, context.pieces, around, cell, {coarse_level_degree}, rules),
-                     make_angle_level(context, coarse, cell, {coarse_level_degree}), Errors::Counted, allocate);
+  return write_level(make_level(context, coarse, context.pieces, around, cell, coarse_economy, rules),
+                     make_angle_level(context, coarse, cell, coarse_economy), Errors::Counted, allocate);
 }
 
 BlockLevel fine_level(const Block::Context& context, const CellTree::Cell& cell, const Allocate& allocate,
                       std::vector<PieceRule>* rules) {
   const NearFar& fine = context.fine;
   const Surroundings around = context.tree.surroundings(cell);
-  return write_level(make_level(context, fine, context.pieces, around, cell, fine_polynomials(fine), rules),
-                     make_angle_level(context, fine, cell, fine_polynomials(fine)), Errors::Stated, allocate);
+  return write_level(make_level(context, fine, context.pieces, around, cell, fine_economy(fine), rules),
+                     make_angle_level(context, fine, cell, fine_economy(fine)), Errors::Stated, allocate);
 }
 
 }  // namespace marrow

@@ -74,15 +74,15 @@ struct Shortened {
 
 }  // namespace
 
-LevelPolynomials economized(const FarField& far, int most, const Economy& allowed) {
+LevelPolynomials economized(const FarField& far, const Economy& economy) {
   Shortened kept(far);
-  kept.shorten(far.degree, most);
-  int degree = most;
+  kept.shorten(far.degree, economy.most);
+  int degree = economy.most;
   for (auto lower = evaluated_degrees.rbegin(); lower != evaluated_degrees.rend(); ++lower) {
-    if (*lower >= most) continue;
+    if (*lower >= economy.most) continue;
     Shortened shorter = kept;
     shorter.shorten(degree, *lower);
-    if (!shorter.is_within(allowed)) break;
+    if (!shorter.is_within(economy)) break;
     kept = shorter;
     degree = *lower;
   }

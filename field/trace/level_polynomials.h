@@ -17,8 +17,9 @@ struct LevelPolynomials {
 /// What kernels evaluate.
 inline constexpr std::array<int, 3> evaluated_degrees{2, 4, 5};
 
-/// What polynomials may leave out to be of a lower degree.
+/// The highest degree, and what polynomials may leave out to be of a lower one.
 struct Economy {
+  int most;
   double f = 0, gradient = 0;
 };
 
@@ -26,7 +27,7 @@ struct Economy {
 /// T_a(x) T_b(y) T_c(z) in it, 2^(1-a) 2^(1-b) 2^(1-c) (1 for an exponent of 0), which is at most as large as that in
 /// the cube; the rest is of lower degrees. So polynomials of degree 5 are nearly as good as those of degree 8 that they
 /// come from, at a third of the cost. What is left out counts as an error. Of the evaluated degrees up to `most` the
-/// lowest is taken for which that is within `allowed`; `most` itself whatever it leaves out.
-LevelPolynomials economized(const FarField&, int most, const Economy& allowed = {});
+/// lowest is taken for which that is allowed; `most` itself whatever it leaves out.
+LevelPolynomials economized(const FarField&, const Economy&);
 
 }  // namespace marrow

@@ -31,17 +31,16 @@ inline int fine_far_degree_for(std::size_t piece_count) {
   return piece_count < many_pieces ? high_far_degree : highest_far_degree;
 }
 
-/// The highest degree of the polynomials that a level evaluates: what is left out is an error of the level, far below
-/// what counts in the coarse one.
-inline constexpr int coarse_level_degree = 2;
-inline int fine_level_degree(int far_degree) { return far_degree == highest_far_degree ? 5 : 4; }
+/// What a level evaluates. What it leaves out is an error of it, far below what counts in the coarse one.
+inline constexpr Economy coarse_economy{.most = 2};
 
-/// What polynomials of the highest degree may leave out to be of a lower one: as much as a hundred pieces may cause, a
-/// quarter of the tolerance. Hits of 10,000 hairs are as exact with it as without (root mean square of C - 1 8.8e-7);
-/// those of few pieces, which are more exact, would be less so (1.7e-7 to 2.3e-7).
-inline Economy fine_economy(const NearFar& precision) {
-  const double pieces = precision.far_degree() == highest_far_degree ? 100 : 0;
-  return {.f = pieces * precision.budget().field, .gradient = pieces * precision.budget().gradient};
+/// Polynomials of the highest degree may leave out as much as a hundred pieces may cause, a quarter of the tolerance.
+/// Hits of 10,000 hairs are as exact with it as without (root mean square of C - 1 8.8e-7); those of few pieces, which
+/// are more exact, would be less so (1.7e-7 to 2.3e-7).
+inline Economy fine_economy(const NearFar& fine) {
+  constexpr double pieces = 100;
+  if (fine.far_degree() < highest_far_degree) return {.most = 4};
+  return {.most = 5, .f = pieces * fine.budget().field, .gradient = pieces * fine.budget().gradient};
 }
 
 /// Below it lists are so short that what the coarse level loses in degrees costs more samples than sources.

@@ -19,10 +19,7 @@ StrandedLevel make_stranded_level(const Block::Context& context, const CellTree:
   std::sort(near.begin(), near.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::pair(strands.strand_of(a), a) < std::pair(strands.strand_of(b), b);
   });
-  StrandedLevel out{.level = {.curves = {},
-                              .points = {},
-                              .far = economized(around.far, fine_level_degree(context.fine.far_degree()),
-                                                fine_economy(context.fine))},
+  StrandedLevel out{.level = {.curves = {}, .points = {}, .far = economized(around.far, fine_economy(context.fine))},
                     .seen = strands.around(*cell.tile, cell.center, cell.half, near),
                     .groups = {},
                     .directions = {}};

@@ -136,12 +136,13 @@ void BlendTracer::first_hits(std::span<const PartRays> parts, const RayPacket& p
   const auto take = [&](const Block& block, std::size_t part, const LaneSet& rays) {
     rays.for_each([&](std::size_t i) {
       const CellRoots& roots = group.roots;
-      const bool at_end = any && roots.hit.has(i) && roots.t[i] == packet.t_max[i];
-      if (at_end || roots.enters_inside.has(i)) return alone(parts[part].part, i);  // it may begin inside
+      const CellHit hit = roots.hit.has(i) ? CellHit{roots.t[i], &block} : CellHit{};
+      const bool may_begin_inside = roots.enters_inside.has(i), at_end = any && is_at_end(hit, packet.t_max[i]);
+      if (may_begin_inside || at_end) return alone(parts[part].part, i);
       out.log[i].enter = roots.enter[i];
       add_to(out.log[i], roots, i);
       out.log[i].outside_from = roots.outside_from[i];
-      if (roots.hit.has(i)) out.hit[i] = {roots.t[i], &block};
+      out.hit[i] = hit;
     });
   };
   for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -195,7 +196,7 @@ void BlendTracer::first_hits(std::size_t tile, const RayPacket& packet, const La
   }
   if (!any) return;
   rays.for_each([&](std::size_t i) {
-    if (out.hit[i].block == nullptr || out.hit[i].t < packet.t_max[i]) return;
+    if (!is_at_end(out.hit[i], packet.t_max[i])) return;
     out.hit[i] = first_hit(tile, packet.ray(i), false, out.log[i]).value_or(CellHit{});
   });
 }

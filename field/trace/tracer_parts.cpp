@@ -90,7 +90,7 @@ std::optional<CellHit> BlendTracer::first_hit(const TracePart& part, const Ray& 
           ? hit_in(*part.within, part.slot, ray, any, stretch->enter, stretch->exit, log)
           : hit_in(state_->tree.child(*part.within, part.slot), ray, any, stretch->enter, stretch->exit, log);
   if (log.side == CellLog::Side::Inside) return {};
-  if (any && is_at_end(hit, ray)) return first_hit(part, ray, false, log);
+  if (any && hit && is_at_end(*hit, ray.t_max)) return first_hit(part, ray, false, log);
   pass_on_side(ray, stretch->enter, stretch->exit, log);
   return hit && hit->t <= ray.t_max ? hit : std::nullopt;
 }

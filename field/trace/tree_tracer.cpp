@@ -127,7 +127,7 @@ std::optional<TreeHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, b
   const Cell& c = cells_[cell];
   Interval t = clip(c.box, ray);
   log.enter = t.lo;
-  const double nearly_ended = 0x1p-30 * std::max(std::fabs(t.lo), max_component(abs(ray.origin)));  // gaps are shorter
+  const double nearly_ended = 0x1p-30 * std::max(std::fabs(t.hi), max_component(abs(ray.origin)));  // gaps are shorter
   if (any) t.hi = std::min(t.hi, ray.t_max + nearly_ended);
   Ray onward = ray;
   while (t.lo <= t.hi) {

@@ -178,7 +178,7 @@ TEST(FarField, OfALowerDegreeIsWithinItsStatedError) {
     const Split s = random_split(random, random.whole(3, 7), 1e-5, far_degree(i));
     if (s.far_pieces.empty()) continue;
     const int degree = s.far.degree == low_far_degree ? 2 : evaluated_degrees[static_cast<std::size_t>(i / 3 % 3)];
-    const LevelPolynomials low = economized(s.far, degree);
+    const LevelPolynomials low = economized(s.far, {.most = degree});
     ASSERT_EQ(low.coefficients.size(), monomials_to_degree(degree));
     const double f_allowed = low.f_error - s.far.f_error, g_allowed = low.gradient_error - s.far.gradient_error;
     for (int k = 0; k < 40; ++k) {
@@ -203,16 +203,17 @@ TEST(FarField, TakesTheLowestDegreeThatIsWithinTheEconomy) {
   for (int i = 0; i < 300; ++i) {
     const Split s = random_split(random, random.whole(3, 7), 1e-5, i % 2 ? high_far_degree : highest_far_degree);
     if (s.far_pieces.empty()) continue;
-    const Economy allowed{exp(random.between(-16, -4)), exp(random.between(-14, -2))};
+    const Economy allowed{
+        .most = evaluated_degrees.back(), .f = exp(random.between(-16, -4)), .gradient = exp(random.between(-14, -2))};
     const auto is_within = [&](int degree) {
-      const LevelPolynomials all = economized(s.far, degree);
+      const LevelPolynomials all = economized(s.far, {.most = degree});
       return all.f_error - s.far.f_error <= allowed.f && all.gradient_error - s.far.gradient_error <= allowed.gradient;
     };
     std::size_t expected = 0;
     while (expected + 1 < evaluated_degrees.size() && !is_within(evaluated_degrees[expected])) ++expected;
-    const LevelPolynomials found = economized(s.far, evaluated_degrees.back(), allowed);
+    const LevelPolynomials found = economized(s.far, allowed);
     ASSERT_EQ(found.degree, evaluated_degrees[expected]);
-    ASSERT_EQ(found.coefficients, economized(s.far, found.degree).coefficients);
+    ASSERT_EQ(found.coefficients, economized(s.far, {.most = found.degree}).coefficients);
     ++taken[expected];
   }
   for (const int times : taken) EXPECT_GT(times, 10);
