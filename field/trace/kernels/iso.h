@@ -18,13 +18,14 @@ struct CurvePlace {
     fraction = from - to_float(index);
   }
   CurveValue<F> in(const float* table) const {
-    const F low = gather(table, index), difference = gather(table + 1, index) - low;
+    const auto [low, high] = neighbours_at(table, index);
+    const F difference = high - low;
     return {low + difference * fraction, difference};
   }
   // As in(), and level beyond the last entry.
   F within(const float* table) const {
-    const F low = gather(table, index);
-    return low + (gather(table + 1, index) - low) * min_of(fraction, 1.0F);
+    const auto [low, high] = neighbours_at(table, index);
+    return low + (high - low) * min_of(fraction, 1.0F);
   }
 };
 

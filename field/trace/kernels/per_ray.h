@@ -103,6 +103,42 @@ inline PacketInt gather(const int* table, PacketInt index) {
   return gather_lanes<PacketInt>(table, index);
 #endif
 }
+// An entry of a table, and the next one.
+template <class F>
+struct Neighbours {
+  F low, high;
+};
+inline Neighbours<float> neighbours_at(const float* table, int index) { return {table[index], table[index + 1]}; }
+// Both together, as one number of twice the size: a gather takes its time for each number, whatever its size.
+#if defined(__AVX512F__)
+inline Neighbours<PacketFloat> neighbours_at(const float* table, PacketInt index) {
+  using Pairs = double __attribute__((vector_size(64)));
+  const auto pairs = [&](auto of) {
+    return reinterpret_cast<PacketFloat>(__builtin_ia32_gathersiv8df(Pairs{}, table, of, -1, 4));
+  };
+  const PacketFloat a = pairs(__builtin_shufflevector(index, index, 0, 1, 2, 3, 4, 5, 6, 7)),
+                    b = pairs(__builtin_shufflevector(index, index, 8, 9, 10, 11, 12, 13, 14, 15));
+  return {__builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30),
+          __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31)};
+}
+#elif defined(__AVX2__)
+inline Neighbours<PacketFloat> neighbours_at(const float* table, PacketInt index) {
+  using Pairs = double __attribute__((vector_size(32)));
+  const Pairs all = reinterpret_cast<Pairs>(PacketInt{} - 1);
+  const auto pairs = [&](auto of) {
+    return reinterpret_cast<PacketFloat>(
+        __builtin_ia32_gathersiv4df(Pairs{}, reinterpret_cast<const double*>(table), of, all, 4));
+  };
+  const PacketFloat a = pairs(__builtin_shufflevector(index, index, 0, 1, 2, 3)),
+                    b = pairs(__builtin_shufflevector(index, index, 4, 5, 6, 7));
+  return {__builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14),
+          __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15)};
+}
+#else
+inline Neighbours<PacketFloat> neighbours_at(const float* table, PacketInt index) {
+  return {gather(table, index), gather(table + 1, index)};
+}
+#endif
 // Of sixteen numbers.
 inline int picked(const int (&table)[16], int index) { return table[index]; }
 template <class V, class T>
