@@ -70,6 +70,10 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
       cell_(cell),
       view_{.find_surface = [](const void* owner,
                                int octant) { return static_cast<const Block*>(owner)->surface(octant); },
+            .find_known_surface =
+                [](const void* owner, std::uint64_t (&octants)[8]) {
+                  return static_cast<const Block*>(owner)->known_surface(octants);
+                },
             .make_coarse = [](const void* owner) -> const FieldLevel& {
               return static_cast<const Block*>(owner)->coarse().level;
             },
@@ -119,6 +123,13 @@ std::uint64_t Block::surface(int octant) const {
     surface_known_.fetch_or(static_cast<std::uint8_t>(1U << octant), std::memory_order_release);
   }
   return slots.load(std::memory_order_relaxed);
+}
+
+unsigned Block::known_surface(std::uint64_t (&octants)[8]) const {
+  const unsigned known = surface_known_.load(std::memory_order_acquire) | (~octants_ & 0xff);
+  for (std::size_t i = 0; i < surface_.size(); ++i)
+    octants[i] = known >> i & 1 ? surface_[i].load(std::memory_order_relaxed) : 0;
+  return known;
 }
 
 const SharePatch& Block::patch(const int (&layer)[3]) const {

@@ -85,6 +85,7 @@ class Block {
   void keep_recipe(const Stored&, const BlockLevel&, std::span<const PieceRule>) const;
   Stored coarse_, fine_;
   std::uint64_t surface(int octant) const;
+  unsigned known_surface(std::uint64_t (&octants)[8]) const;
   const SharePatch& patch(const int (&layer)[3]) const;
   std::unique_ptr<const SharePatches> patches_;
   unsigned octants_ = 0;  // a bit for each that may hold surface

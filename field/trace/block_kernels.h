@@ -77,6 +77,8 @@ struct BlockView {
   /// For an octant of the block (x the lowest bit) a bit for each of its 4 x 4 x 4 slots, x + 4 y + 16 z, that may hold
   /// surface.
   std::uint64_t (*find_surface)(const void* owner, int octant) = nullptr;
+  /// The same of all octants of which it is known by now, a bit for each of these; 0 of the others.
+  unsigned (*find_known_surface)(const void* owner, std::uint64_t (&octants)[8]) = nullptr;
   /// Made when they are needed; good until the same is asked of another block.
   const FieldLevel& (*make_coarse)(const void* owner) = nullptr;
   const FieldLevel& (*make_fine)(const void* owner) = nullptr;
@@ -90,6 +92,7 @@ struct BlockView {
   const SharePatch& (*find_patch)(const void* owner, const int (&layer)[3]) = nullptr;
 
   std::uint64_t surface(int octant) const { return find_surface(owner, octant); }
+  unsigned known_surface(std::uint64_t (&octants)[8]) const { return find_known_surface(owner, octants); }
   const FieldLevel& coarse() const { return make_coarse(owner); }
   const FieldLevel& fine() const { return make_fine(owner); }
   const SharePatch& patch(const int (&layer)[3]) const { return find_patch(owner, layer); }

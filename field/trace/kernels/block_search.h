@@ -11,7 +11,7 @@ class BlockSearch {
     static_assert(sizeof(BlockRays) + sizeof(Own) <= PacketMemory::of_rays);
     rays_ = reinterpret_cast<BlockRays*>(memory.rays);
     own_ = reinterpret_cast<Own*>(memory.rays + sizeof(BlockRays));
-    for (int i = 0; i < count; ++i) own_->slots[i].known = 0;
+    for (int i = 0; i < count; ++i) own_->slots[i].take_known(*cells[i].block);
   }
 
   // As first_root() of each of these rays.
@@ -154,8 +154,9 @@ class BlockSearch {
       PacketInt cell;
       __builtin_memcpy(&cell, r.cell + first, sizeof cell);
       const BlocksOf<PacketFloat> blocks{cells_, cell};
-      new (&own_->runs[first / packet_lanes]) RunsOfGroup(blocks, SlotBits<PacketFloat>(blocks, own_->slots), ray,
-                                                          load_native(r.from + first), load_native(r.to + first));
+      const SlotBits<PacketFloat> slots(blocks, own_->slots, mask_of(open.group<packet_lanes>(first)));
+      new (&own_->runs[first / packet_lanes])
+          RunsOfGroup(blocks, slots, ray, load_native(r.from + first), load_native(r.to + first));
     });
   }
 

@@ -1,26 +1,32 @@
 // The stretches of a ray in slots of a block that may hold surface. Part of block_kernels_<set>.cpp.
 
-// Of a slot by its layers.
+// Of a slot in its block, by its layers: six bits for the slot in its octant, x first, then three for the octant.
 template <class Int>
-inline Int octant_of(const Int (&layer)[3]) {
-  return (layer[0] >> 2) | (layer[1] >> 2) << 1 | (layer[2] >> 2) << 2;
+inline Int slot_address(const Int (&layer)[3]) {
+  return ((layer[0] | layer[0] << 4) & 0x043) | ((layer[1] << 2 | layer[1] << 5) & 0x08c) |
+         ((layer[2] << 4 | layer[2] << 6) & 0x130);
 }
 template <class Int>
-inline Int slot_in_octant(const Int (&layer)[3]) {
-  return (layer[0] & 3) | (layer[1] & 3) << 2 | (layer[2] & 3) << 4;
+inline Int octant_of(Int address) {
+  return address >> 6;
 }
 
-// The bits of a block's 8 x 8 x 8 slots, octant by octant as rays come.
+// The bits of a block's 8 x 8 x 8 slots, by their addresses. Octants that no ray has come to before come as they do.
 struct SlotWords {
-  unsigned known = 0;  // a bit for each octant
-  int words[16];       // two for each octant
+  static constexpr int count = 16;  // two for each octant
+  int words[count];
+  int known;  // a bit for each octant
 
+  void take_known(const BlockView& block) {
+    std::uint64_t octants[count / 2];
+    known = static_cast<int>(block.known_surface(octants));
+    __builtin_memcpy(words, octants, sizeof words);
+  }
   void need(const BlockView& block, int octant) {
     if (known >> octant & 1) return;
     const std::uint64_t slots = block.surface(octant);
-    words[2 * octant] = static_cast<int>(static_cast<unsigned>(slots));
-    words[2 * octant + 1] = static_cast<int>(static_cast<unsigned>(slots >> 32));
-    known |= 1U << octant;
+    __builtin_memcpy(words + 2 * octant, &slots, sizeof slots);
+    known |= 1 << octant;
   }
 };
 
@@ -31,12 +37,11 @@ class SlotBits;
 template <>
 class SlotBits<float> {
  public:
-  explicit SlotBits(const BlocksOf<float>& block) : block_(block.block) {}
-  bool at(const int (&layer)[3], bool active) {
-    const int octant = octant_of(layer), slot = slot_in_octant(layer);
+  explicit SlotBits(const BlocksOf<float>& block) : block_(block.block) { words_.known = 0; }
+  bool at(int address, bool active) {
     if (!active) return false;
-    words_.need(*block_, octant);
-    return words_.words[2 * octant + (slot >> 5)] >> (slot & 31) & 1;
+    words_.need(*block_, octant_of(address));
+    return words_.words[address >> 5] >> (address & 31) & 1;
   }
 
  private:
@@ -48,33 +53,38 @@ template <>
 class SlotBits<PacketFloat> {
  public:
   SlotBits() = default;
-  // `words`: of each cell.
-  SlotBits(const BlocksOf<PacketFloat>& blocks, SlotWords* words)
+  // `words`: of each cell; `rays`: those that may be asked for.
+  SlotBits(const BlocksOf<PacketFloat>& blocks, SlotWords* words, PacketInt rays)
       : cells_(blocks.cells), words_(words), place_(blocks.cell * ints_per_cell) {
-    known_ = gather(ints(), place_);
+    const int cell = blocks.cell[__builtin_ctz(lane_bits(rays))];
+    if (!any(rays & (blocks.cell != cell))) of_all_ = &words[cell];
+    find_known();
   }
-  PacketInt at(const PacketInt (&layer)[3], PacketInt active) {
-    const PacketInt octant = octant_of(layer), slot = slot_in_octant(layer);
-    const PacketInt unknown = active & ((known_ >> octant & 1) == 0);
+  PacketInt at(PacketInt address, PacketInt active) {
+    const PacketInt octant = octant_of(address), unknown = active & ((known_ >> octant & 1) == 0);
     if (any(unknown)) need(unknown, octant);
-    const PacketInt word = gather(ints() + 1, place_ + 2 * octant + (slot >> 5));
-    return (word >> (slot & 31) & 1) != 0;
+    return (word(address >> 5) >> (address & 31) & 1) != 0;
   }
 
  private:
   static constexpr int ints_per_cell = sizeof(SlotWords) / sizeof(int);
 
-  const int* ints() const { return reinterpret_cast<const int*>(words_); }
-  void need(PacketInt rays, PacketInt octant) {
+  const int* ints() const { return words_->words; }
+  PacketInt word(PacketInt index) const {
+    return of_all_ != nullptr ? picked(of_all_->words, index) : gather(ints(), place_ + index);
+  }
+  void find_known() { known_ = gather(&words_->known, place_); }
+  [[gnu::noinline, gnu::cold]] void need(PacketInt rays, PacketInt octant) {
     for (unsigned left = lane_bits(rays); left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left), cell = place_[lane] / ints_per_cell;
       words_[cell].need(*cells_[cell].block, octant[lane]);
     }
-    known_ = gather(ints(), place_);
+    find_known();
   }
 
   const CellRays* cells_ = nullptr;
   SlotWords* words_ = nullptr;
+  const SlotWords* of_all_ = nullptr;  // where all rays are in one cell
   PacketInt place_{}, known_{};
 };
 
@@ -87,29 +97,38 @@ class Layer {
   using Int = IntOf<F>;
 
   Layer() = default;
-  Layer(F origin, F direction, F t)
-      : origin_(origin), inverse_(1 / nonzero(direction)), upward_(nonzero(direction) > 0.0F) {
+  Layer(F origin, F direction, F t) : origin_(origin), inverse_(1 / nonzero(direction)) {
+    const Mask upward = nonzero(direction) > 0.0F;
+    onward_ = select(upward, Int{} + 1, Int{} - 1);
     index = layer_of(origin + direction * t);
-    find_leave();
+    plane_ = index + select(upward, Int{} + 1, Int{});
+    leave = t_at_plane();
+    look_ahead();
   }
 
   void step(Mask rays) {
-    index = select(rays, index + select(upward_, Int{} + 1, Int{} - 1), index);
-    find_leave();
+    index = select(rays, index + onward_, index);
+    leave = select(rays, leave_next_, leave);
+    plane_ = select(rays, plane_ + onward_, plane_);
+    leave_next_ = t_at_plane();
   }
 
   Int index{};
   F leave{};
 
  private:
-  void find_leave() {
-    const Int plane = index + select(upward_, Int{} + 1, Int{});
-    const F t = (to_float(plane) * 0.25F - 1 - origin_) * inverse_;
-    leave = select((plane <= 0) | (plane >= 8), all_lanes<F>(infinity), t);
+  // Planes are one step ahead, so that no step has to wait for a place.
+  void look_ahead() {
+    plane_ = plane_ + onward_;
+    leave_next_ = t_at_plane();
+  }
+  F t_at_plane() const {
+    const F t = (to_float(plane_) * 0.25F - 1 - origin_) * inverse_;
+    return select((plane_ <= 0) | (plane_ >= 8), all_lanes<F>(infinity), t);
   }
 
-  F origin_{}, inverse_{};
-  Mask upward_{};
+  F origin_{}, inverse_{}, leave_next_{};
+  Int onward_{}, plane_{};
 };
 
 template <class F>
@@ -135,10 +154,11 @@ class Runs {
   // Finds the next run of each of these rays, and tells which have one.
   Mask next(const RayOf<F>& ray, Mask rays, Run<F>& run) {
     Mask found{}, open = rays & !ended_;
+    Layer<F> layers[3] = {layers_[0], layers_[1], layers_[2]};  // of its own, for registers
     while (any(open)) {
-      const F leave = min_of(min_of(layers_[0].leave, layers_[1].leave), min_of(layers_[2].leave, end_));
-      const IntOf<F> layer[3] = {layers_[0].index, layers_[1].index, layers_[2].index};
-      const Mask crossed = open & (leave > t_), surface = crossed & slots_.at(layer, crossed);
+      const F leave = min_of(min_of(layers[0].leave, layers[1].leave), min_of(layers[2].leave, end_));
+      const IntOf<F> layer[3] = {layers[0].index, layers[1].index, layers[2].index};
+      const Mask crossed = open & (leave > t_), surface = crossed & slots_.at(slot_address(layer), crossed);
       const Mask first = surface & !found;
       if constexpr (Rule == Angle::Patched) {
         if (any(surface)) add_shares(ray, surface, first, layer, leave, run);
@@ -147,12 +167,13 @@ class Runs {
       assign(surface, run.end, leave);
       const Mask closed = found & crossed & !surface;
       found = found | surface;
-      for (Layer<F>& l : layers_) l.step(open & (l.leave <= leave));
+      for (Layer<F>& l : layers) l.step(open & (l.leave <= leave));
       t_ = select(crossed, leave, t_);
       const Mask last = open & (leave >= end_);
       ended_ = ended_ | last;
       open = open & !closed & !last;
     }
+    for (int k = 0; k < 3; ++k) layers_[k] = layers[k];
     return found;
   }
 
