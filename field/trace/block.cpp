@@ -88,8 +88,9 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
             .tables = context.iso.tables()} {
   if (context.strands != nullptr) {
     patches_ = std::make_unique<const SharePatches>();
-    view_.find_patch = [](const void* owner, const int(&layer)[3]) -> const SharePatch& {
-      return static_cast<const Block*>(owner)->patch(layer);
+    view_.parts = patches_->octants();
+    view_.make_part = [](const void* owner, int path) -> const SharePart& {
+      return static_cast<const Block*>(owner)->part(path);
     };
   }
   const auto find_octants = [&](const BlockLevel& coarse) {
@@ -132,9 +133,9 @@ unsigned Block::known_surface(std::uint64_t (&octants)[8]) const {
   return known;
 }
 
-const SharePatch& Block::patch(const int (&layer)[3]) const {
+const SharePart& Block::part(int path) const {
   thread_local LevelCache cache;
-  return patches_->at(layer, context_.kernels, context_.degree, [&]() -> const BlockLevel& {
+  return patches_->at(path, context_.kernels, context_.degree, [&]() -> const BlockLevel& {
     return cache.get(serial_, [&](LevelBuffer& buffer) {
       return write_stranded_level(make_stranded_level(context_, cell_), in(buffer));
     });
@@ -144,7 +145,7 @@ const SharePatch& Block::patch(const int (&layer)[3]) const {
 ShareAt Block::share(const Vec3d& place) const {
   int layer[3];
   for (std::size_t k = 0; k < 3; ++k) layer[k] = static_cast<int>(std::clamp(4 * place[k] + 4, 0.0, 7.5));
-  return share_at(patch(layer), place);
+  return share_at(SharePatches::patch_of(part(SharePatches::path_to(layer))), place);
 }
 
 Box3 Block::surface_box() const {

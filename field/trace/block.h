@@ -86,7 +86,7 @@ class Block {
   Stored coarse_, fine_;
   std::uint64_t surface(int octant) const;
   unsigned known_surface(std::uint64_t (&octants)[8]) const;
-  const SharePatch& patch(const int (&layer)[3]) const;
+  const SharePart& part(int path) const;
   std::unique_ptr<const SharePatches> patches_;
   unsigned octants_ = 0;  // a bit for each that may hold surface
   mutable std::array<std::atomic<std::uint64_t>, 8> surface_{};

@@ -60,16 +60,29 @@ struct FieldLevel {
 /// half, its coefficients in the order of far_field.h. It is the share that is traced; see share_patch.h.
 struct alignas(64) SharePatch {
   static constexpr int degree = 4, coefficients = 35;
-  // What is asked most is in one cache line.
-  int layers_log2 = 2;  ///< the part is 2^layers_log2 of the eight layers of slots wide
-  float level = 0;      ///< in the part it is within `bent` of level + slope . (x - center)
-  float slope[3] = {0, 0, 0}, bent = 0;
   float center[3] = {0, 0, 0}, inverse_half = 1;
   float error = 0;  ///< what it may be off from the exact share: an estimate
   float bend = 0;   ///< half of its second derivative along any line is at most this
   float coefficient[coefficients] = {};
 };
 inline constexpr int floats_per_patch = sizeof(SharePatch) / sizeof(float);
+
+/// A part of a block, for which there is one patch, or eight smaller parts: an octant of the block, of one of those, or
+/// of one of these, which is a slot. Parts of one cube follow each other by their octants, x the lowest bit. What runs
+/// need of a patch is here, so that they find it where they find out that there is one.
+struct alignas(32) SharePart {
+  /// Of the patch; one more than that of the first of eight parts; or 0 where neither is made yet. All else is good
+  /// once it is set, and of a patch only.
+  std::uintptr_t address = 0;
+  float half = 0.5F;  ///< of the part
+  float level = 0;    ///< in the part the share is within `bent` of level + slope . (x - center)
+  float slope[3] = {0, 0, 0}, bent = 0;
+
+  static constexpr std::uintptr_t divided = 1;
+  /// Of the first octant of a path to a slot, which is the octants of three halvings, the largest cube's in the highest
+  /// bits.
+  static constexpr int root_shift = 6;
+};
 
 /// What the kernels read of a block. The coarse level finds where the surface can be; the fine level is the field that
 /// is rendered.
@@ -88,14 +101,14 @@ struct BlockView {
   const IsoCurve::View* rows = nullptr;  ///< where alpha varies: IsoCurve::views()
   int row_count = 0;
   AngleTables tables;  ///< where alpha varies
-  /// Where directions give alpha, else null: the part of the block that holds a slot, by its layers, 0 to 7.
-  const SharePatch& (*find_patch)(const void* owner, const int (&layer)[3]) = nullptr;
+  /// Where directions give alpha, else null: the octants of the block, and what makes the part that holds a slot.
+  const SharePart* parts = nullptr;
+  const SharePart& (*make_part)(const void* owner, int path) = nullptr;
 
   std::uint64_t surface(int octant) const { return find_surface(owner, octant); }
   unsigned known_surface(std::uint64_t (&octants)[8]) const { return find_known_surface(owner, octants); }
   const FieldLevel& coarse() const { return make_coarse(owner); }
   const FieldLevel& fine() const { return make_fine(owner); }
-  const SharePatch& patch(const int (&layer)[3]) const { return find_patch(owner, layer); }
 };
 
 struct LocalRay {

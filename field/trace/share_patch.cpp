@@ -152,7 +152,7 @@ OfPowers bernstein_of_powers() {
 
 // What lies beside the line: all terms above the first degree are between the least and the largest of their
 // coefficients by Bernstein's polynomials.
-void find_line(SharePatch& patch) {
+void find_line(SharePatch& patch, SharePart& part) {
   static const OfPowers of_powers = bernstein_of_powers();
   const auto power = [](int exponent, std::size_t k) { return of_powers[static_cast<std::size_t>(exponent)][k]; };
   double low = 0, high = 0;
@@ -173,13 +173,13 @@ void find_line(SharePatch& patch) {
     const Monomial& p = monomials[m];
     const auto c = static_cast<double>(patch.coefficient[m]), d = static_cast<double>(p.degree());
     if (p.degree() == 0) level += c;
-    if (p.degree() == 1) patch.slope[p.a > 0 ? 0 : p.b > 0 ? 1 : 2] = patch.coefficient[m] * patch.inverse_half;
+    if (p.degree() == 1) part.slope[p.a > 0 ? 0 : p.b > 0 ? 1 : 2] = patch.coefficient[m] * patch.inverse_half;
     // Of a monomial of degree d where |z| <= 1 along each axis.
     bend += 0.5 * std::fabs(c) * d * d;
   }
   constexpr double rounding = 1e-6;
-  patch.level = static_cast<float>(level);
-  patch.bent = static_cast<float>(0.5 * (high - low) + rounding);
+  part.level = static_cast<float>(level);
+  part.bent = static_cast<float>(0.5 * (high - low) + rounding);
   patch.bend = static_cast<float>(bend * (1 + rounding)) * patch.inverse_half * patch.inverse_half;
 }
 
@@ -204,46 +204,77 @@ std::vector<Factors> factors_of_monomials() {
   return all;
 }
 
+struct Cube {
+  float center[3], half;
+};
+// The part that holds the slot of a path, by the highest bits of it.
+Cube cube_of(int path, int shift) {
+  Cube cube{.center = {0, 0, 0}, .half = 1};
+  for (int s = SharePart::root_shift; s >= shift; s -= 3) {
+    cube.half *= 0.5F;
+    for (int k = 0; k < 3; ++k) cube.center[k] += (path >> s >> k & 1) != 0 ? cube.half : -cube.half;
+  }
+  return cube;
+}
+
 }  // namespace
 
-SharePatches::Part::~Part() {
-  const std::uintptr_t address = address_.load(std::memory_order_relaxed);
-  if ((address & divided) == 0) delete patch_at(address);
-  else delete parts_at(address);
+void SharePatches::free_all(const Eight& eight) {
+  for (const SharePart& part : eight.parts) {
+    if (part.address == 0) continue;
+    if ((part.address & SharePart::divided) == 0) {
+      delete patch_at(part.address);
+    } else {
+      free_all(*parts_at(part.address));
+      delete parts_at(part.address);
+    }
+  }
+}
+
+int SharePatches::path_to(const int (&layer)[3]) {
+  int path = 0;
+  for (int log2 = 2; log2 >= 0; --log2)
+    for (int k = 2; k >= 0; --k) path = path << 1 | (layer[k] >> log2 & 1);
+  return path;
+}
+
+// Makes a patch, or eight parts where one does not do, and returns the address that the part then has.
+std::uintptr_t SharePatches::make(const BlockKernels& kernels, int degree, const BlockLevel& strands, int path,
+                                  int shift, SharePart& to) const {
+  static_assert(alignof(SharePatch) > SharePart::divided && alignof(Eight) > SharePart::divided);
+  auto made = std::make_unique<SharePatch>();
+  SharePatch& patch = *made;
+  const Cube cube = cube_of(path, shift);
+  patch.inverse_half = 1 / cube.half;
+  for (int k = 0; k < 3; ++k) patch.center[k] = cube.center[k];
+  const double residual = fit_patch(data_of(kernels, degree, strands.level, patch), patch);
+  SharePart part{.half = cube.half};
+  if (shift > 0 && residual > largest_residual) {
+    auto parts = std::make_unique<Eight>();
+    part.address = reinterpret_cast<std::uintptr_t>(parts.get()) + SharePart::divided;
+    return keep(part, std::move(parts), to);
+  }
+  patch.error = static_cast<float>(strands.angle_error + 2 * residual);  // it is off by more between places
+  find_line(patch, part);
+  for (float known = error_.load(std::memory_order_relaxed);
+       known < patch.error && !error_.compare_exchange_weak(known, patch.error, std::memory_order_relaxed);) {}
+  part.address = reinterpret_cast<std::uintptr_t>(made.get());
+  return keep(part, std::move(made), to);
 }
 
 // Two threads may both have made it; one copy is kept.
-std::uintptr_t SharePatches::Part::keep(Made made) const {
-  static_assert(alignof(SharePatch) > divided && alignof(Eight) > divided);
-  const std::uintptr_t address = made.patch ? reinterpret_cast<std::uintptr_t>(made.patch.get())
-                                            : reinterpret_cast<std::uintptr_t>(made.parts.get()) + divided;
-  std::uintptr_t before = 0;
-  if (!address_.compare_exchange_strong(before, address, std::memory_order_acq_rel)) return before;
-  made.patch.release();
-  made.parts.release();
-  return address;
-}
-
-SharePatches::Made SharePatches::make(const BlockKernels& kernels, int degree, const BlockLevel& strands,
-                                      const int (&layer)[3], int layers_log2) const {
-  auto made = std::make_unique<SharePatch>();
-  SharePatch& patch = *made;
-  patch.layers_log2 = layers_log2;
-  const int width = 1 << layers_log2;
-  patch.inverse_half = 8.0F / static_cast<float>(width);
-  for (int k = 0; k < 3; ++k)
-    patch.center[k] = (static_cast<float>(layer[k] >> layers_log2) + 0.5F) * 0.25F * static_cast<float>(width) - 1;
-  const double residual = fit_patch(data_of(kernels, degree, strands.level, patch), patch);
-  if (layers_log2 > 0 && residual > largest_residual) {
-    bytes_.fetch_add(sizeof(Eight), std::memory_order_relaxed);
-    return {.patch = {}, .parts = std::make_unique<const Eight>()};
-  }
-  patch.error = static_cast<float>(strands.angle_error + 2 * residual);  // it is off by more between places
-  find_line(patch);
-  bytes_.fetch_add(sizeof(SharePatch), std::memory_order_relaxed);
-  for (float known = error_.load(std::memory_order_relaxed);
-       known < patch.error && !error_.compare_exchange_weak(known, patch.error, std::memory_order_relaxed);) {}
-  return {.patch = std::move(made), .parts = {}};
+template <class T>
+std::uintptr_t SharePatches::keep(const SharePart& made, std::unique_ptr<T> owned, SharePart& to) const {
+  const std::lock_guard lock(keeping_);
+  if (to.address != 0) return to.address;
+  bytes_.fetch_add(sizeof(T), std::memory_order_relaxed);
+  owned.release();
+  to.half = made.half;
+  to.level = made.level;
+  std::ranges::copy(made.slope, to.slope);
+  to.bent = made.bent;
+  std::atomic_ref(to.address).store(made.address, std::memory_order_release);
+  return made.address;
 }
 
 ShareAt share_at(const SharePatch& patch, const Vec3d& at) {

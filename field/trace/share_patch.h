@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 
 #include "field/math/vec3.h"
 #include "field/trace/block_kernels.h"
@@ -31,64 +32,55 @@ ShareAt share_at(const SharePatch&, const Vec3d& place);
 /// Those of one block. Safe to use from many threads.
 class SharePatches {
  public:
-  /// The part that holds a slot, given by its layers, 0 to 7. `strands()` is the level of stranded_level.h; it is asked
-  /// for when a part is made.
+  SharePatches() = default;
+  SharePatches(const SharePatches&) = delete;
+  SharePatches& operator=(const SharePatches&) = delete;
+  ~SharePatches() { free_all(octants_); }
+
+  /// The part that holds a slot, which has a patch. `strands()` is the level of stranded_level.h; it is asked for when
+  /// a patch is made.
   template <class Strands>
-  const SharePatch& at(const int (&layer)[3], const BlockKernels& kernels, int degree, const Strands& strands) const;
+  const SharePart& at(int path, const BlockKernels& kernels, int degree, const Strands& strands) const;
+
+  const SharePart* octants() const { return octants_.parts.data(); }
+  static const SharePatch& patch_of(const SharePart& part) { return *patch_at(part.address); }
+  /// To a slot, given by its layers, 0 to 7: from the largest cube to the smallest the octants that hold it.
+  static int path_to(const int (&layer)[3]);
 
   std::size_t bytes() const { return bytes_.load(std::memory_order_relaxed); }
   /// The largest error of any that was made, see SharePatch.
   double error() const { return static_cast<double>(error_.load(std::memory_order_relaxed)); }
 
  private:
-  struct Eight;
-  // One of the two.
-  struct Made {
-    std::unique_ptr<const SharePatch> patch;
-    std::unique_ptr<const Eight> parts;  // where a patch does not tell the share well enough
-  };
-  // Made when it is first asked for, as Lazy is. The lowest bit of its address tells which of the two it is, so that
-  // whoever looks for a patch reads nothing of the parts around it.
-  class Part {
-   public:
-    Part() = default;
-    Part(const Part&) = delete;
-    Part& operator=(const Part&) = delete;
-    ~Part();
-
-    template <class Make>
-    std::uintptr_t get(const Make& make) const {
-      const std::uintptr_t ready = address_.load(std::memory_order_acquire);
-      return ready != 0 ? ready : keep(make());
-    }
-
-   private:
-    std::uintptr_t keep(Made) const;
-    mutable std::atomic<std::uintptr_t> address_ = 0;
-  };
   struct alignas(64) Eight {
-    std::array<Part, 8> parts;
+    std::array<SharePart, 8> parts;
   };
-  static constexpr std::uintptr_t divided = 1;
+  static std::uintptr_t address_of(SharePart& part) {
+    return std::atomic_ref(part.address).load(std::memory_order_acquire);
+  }
   static const SharePatch* patch_at(std::uintptr_t address) { return reinterpret_cast<const SharePatch*>(address); }
-  static const Eight* parts_at(std::uintptr_t address) { return reinterpret_cast<const Eight*>(address - divided); }
+  static Eight* parts_at(std::uintptr_t address) { return reinterpret_cast<Eight*>(address - SharePart::divided); }
+  static void free_all(const Eight&);
 
-  Made make(const BlockKernels&, int degree, const BlockLevel& strands, const int (&layer)[3], int layers_log2) const;
+  std::uintptr_t make(const BlockKernels&, int degree, const BlockLevel& strands, int path, int shift,
+                      SharePart& to) const;
+  template <class T>
+  std::uintptr_t keep(const SharePart& made, std::unique_ptr<T> owned, SharePart& to) const;
 
-  Eight octants_;
+  mutable Eight octants_;
+  mutable std::mutex keeping_;
   mutable std::atomic<std::size_t> bytes_ = 0;
   mutable std::atomic<float> error_ = 0;
 };
 
 template <class Strands>
-const SharePatch& SharePatches::at(const int (&layer)[3], const BlockKernels& kernels, int degree,
-                                   const Strands& strands) const {
-  const Eight* eight = &octants_;
-  for (int log2 = 2;; --log2) {
-    const int octant = (layer[0] >> log2 & 1) | (layer[1] >> log2 & 1) << 1 | (layer[2] >> log2 & 1) << 2;
-    const std::uintptr_t address = eight->parts[static_cast<std::size_t>(octant)].get(
-        [&] { return make(kernels, degree, strands(), layer, log2); });
-    if ((address & divided) == 0) return *patch_at(address);
+const SharePart& SharePatches::at(int path, const BlockKernels& kernels, int degree, const Strands& strands) const {
+  Eight* eight = &octants_;
+  for (int shift = SharePart::root_shift;; shift -= 3) {
+    SharePart& part = eight->parts[static_cast<std::size_t>(path >> shift & 7)];
+    std::uintptr_t address = address_of(part);
+    if (address == 0) address = make(kernels, degree, strands(), path, shift, part);
+    if ((address & SharePart::divided) == 0) return part;
     eight = parts_at(address);
   }
 }

@@ -17,19 +17,15 @@ inline PacketFloat of_step(const float* numbers, int count, PacketInt step) {
   return gather(numbers, step);
 }
 
-// Four numbers at an entry, and four at the next one.
+// Eight numbers that follow each other, of each ray.
 template <class F>
-struct TwoEntries {
+struct EightNumbers {
   F low[4], high[4];
 };
-inline TwoEntries<float> entries_at(const float* table, int entry) {
-  const float* p = table + 4 * static_cast<long>(entry);
-  return {{p[0], p[1], p[2], p[3]}, {p[4], p[5], p[6], p[7]}};
-}
 // Together for each lane: gathers take a machine many times as long. Rows have lanes 4 k + i in quarter k of row i.
-inline TwoEntries<PacketFloat> entries_at(const float* table, PacketInt entry) {
+template <class AddressOfLane>
+inline EightNumbers<PacketFloat> eight_of_lanes(const AddressOfLane& of_lane) {
   PacketFloat low[4], high[4];
-  const auto of_lane = [&](int lane) { return table + 4 * static_cast<long>(entry[lane]); };
   for (int i = 0; i < 4; ++i) {
 #if defined(__AVX512F__)
     const auto two = [&](int lane) {
@@ -48,10 +44,19 @@ inline TwoEntries<PacketFloat> entries_at(const float* table, PacketInt entry) {
     high[i] = load4(of_lane(i) + 4);
 #endif
   }
-  TwoEntries<PacketFloat> columns;
+  EightNumbers<PacketFloat> columns;
   transpose_quarters(low, columns.low);
   transpose_quarters(high, columns.high);
   return columns;
+}
+
+// Four numbers at an entry, and four at the next one.
+inline EightNumbers<float> entries_at(const float* table, int entry) {
+  const float* p = table + 4 * static_cast<long>(entry);
+  return {{p[0], p[1], p[2], p[3]}, {p[4], p[5], p[6], p[7]}};
+}
+inline EightNumbers<PacketFloat> entries_at(const float* table, PacketInt entry) {
+  return eight_of_lanes([&](int lane) { return table + 4 * static_cast<long>(entry[lane]); });
 }
 
 // Where a share of the range is on its step.
@@ -81,7 +86,7 @@ struct AnglePlace {
   F from_begin, begin_growth, inverse_step, inverse_growth;
   F at, fraction;
   IntOf<F> entry;
-  TwoEntries<F> sides;
+  EightNumbers<F> sides;
 
   AnglePlace(const AngleTables& tables, F share, F x, F y) : step(tables, share) {
     const auto number = [&](const float* of) { return step.number(tables, of); };
@@ -125,7 +130,7 @@ struct AnglePlace {
   }
   // Of the curve itself, from its slopes at the entries; level beyond the last one.
   F exact_slope(const AngleTables& tables) const {
-    const TwoEntries<F> slopes = entries_at(tables.slopes, entry);
+    const EightNumbers<F> slopes = entries_at(tables.slopes, entry);
     const F a = value_at(slopes.low), b = value_at(slopes.high);
     return a + (b - a) * min_of(fraction, 1.0F);
   }

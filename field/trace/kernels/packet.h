@@ -231,7 +231,7 @@ void roots_between(const CellRays* cells, int count, const PacketView& rays, boo
   out.met = out.hit = out.begins_outside = out.enters_inside = {};
   if (asked.empty()) return;
   enter_blocks(frames, rays, asked, out, in_blocks);
-  if (cells[0].block->find_patch != nullptr) BlockSearch<Angle::Patched>(cells, count, any_root, memory).run(asked);
+  if (cells[0].block->parts != nullptr) BlockSearch<Angle::Patched>(cells, count, any_root, memory).run(asked);
   else BlockSearch<Angle::One>(cells, count, any_root, memory).run(asked);
   leave_blocks(frames, rays, asked, in_blocks, any_root, out);
 }

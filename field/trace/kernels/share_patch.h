@@ -35,31 +35,49 @@ inline OnWay<Degree, F> operator+(OnWay<Degree, F> p, const OnWay<Degree, F>& q)
   return p;
 }
 
-// Calls visit(patch, rays) for the parts of blocks that hold slots, by their layers.
-template <class Visit>
-inline void visit_patches(const BlocksOf<float>& blocks, bool ray, const int (&layer)[3], const Visit& visit) {
-  if (ray) visit(blocks.block->patch(layer), true);
+// The path to a slot: from the largest cube to the smallest the octants that hold it, x the lowest bit of each.
+template <class Int>
+inline Int path_to(const Int (&layer)[3]) {
+  static constexpr int spread[3][16] = {
+      {0, 1, 8, 9, 64, 65, 72, 73}, {0, 2, 16, 18, 128, 130, 144, 146}, {0, 4, 32, 36, 256, 260, 288, 292}};
+  return picked(spread[0], layer[0]) | picked(spread[1], layer[1]) | picked(spread[2], layer[2]);
 }
-template <class Visit>
-inline void visit_patches(const BlocksOf<PacketFloat>& blocks, PacketInt rays, const PacketInt (&layer)[3],
-                          const Visit& visit) {
-  // All parts are looked up first, those of rays in one slot once: none waits for what another one is found to be, so
-  // that the machine waits for memory only once for many.
-  const SharePatch* found[packet_lanes];
-  PacketInt in_slot[packet_lanes];
-  int count = 0;
-  for (PacketInt left = rays; any(left); left &= ~in_slot[count++]) {
-    const int first = __builtin_ctz(lane_bits(left));
-    const int at[3] = {layer[0][first], layer[1][first], layer[2][first]};
-    in_slot[count] =
-        left & (blocks.cell == blocks.cell[first]) & (layer[0] == at[0]) & (layer[1] == at[1]) & (layer[2] == at[2]);
-    found[count] = &blocks.of(first).patch(at);
+
+// That holds a slot of the block; made where it is asked for first.
+inline const SharePart& part_at(const BlockView& block, int path) {
+  const SharePart* parts = block.parts;
+  for (int shift = SharePart::root_shift;; shift -= 3) {
+    const SharePart& part = parts[path >> shift & 7];
+    const std::uintptr_t address = __atomic_load_n(&part.address, __ATOMIC_ACQUIRE);
+    if (address == 0) return block.make_part(block.owner, path);
+    if ((address & SharePart::divided) == 0) return part;
+    parts = reinterpret_cast<const SharePart*>(address - SharePart::divided);
   }
-  for (int i = 0; i < count; ++i) {
-    PacketInt here = in_slot[i];
-    while (i + 1 < count && found[i + 1] == found[i]) here |= in_slot[++i];
-    visit(*found[i], here);
+}
+inline const SharePatch& patch_at(const BlockView& block, int path) {
+  return *reinterpret_cast<const SharePatch*>(part_at(block, path).address);
+}
+
+// What runs need of parts.
+template <class F>
+struct PartLines {
+  F half, level, slope[3], bent;
+};
+inline PartLines<float> lines_at(const BlocksOf<float>& blocks, bool, int path) {
+  const SharePart& part = part_at(*blocks.block, path);
+  return {part.half, part.level, {part.slope[0], part.slope[1], part.slope[2]}, part.bent};
+}
+inline PartLines<PacketFloat> lines_at(const BlocksOf<PacketFloat>& blocks, PacketInt rays, PacketInt path) {
+  static constexpr SharePart none{};
+  const SharePart* parts[packet_lanes];
+  for (const SharePart*& part : parts) part = &none;
+  for (unsigned left = lane_bits(rays); left != 0; left &= left - 1) {
+    const int lane = __builtin_ctz(left);
+    parts[lane] = &part_at(blocks.of(lane), path[lane]);
   }
+  static_assert(sizeof(SharePart) == 8 * sizeof(float) && sizeof(none.address) == 2 * sizeof(float));
+  const auto [low, high] = eight_of_lanes([&](int lane) { return reinterpret_cast<const float*>(parts[lane]); });
+  return {low[2], low[3], {high[0], high[1], high[2]}, high[3]};
 }
 
 // The share on a stretch of a ray: on a line in t, but for what lies between two numbers.
@@ -78,19 +96,22 @@ template <class F>
 class PatchLines {
  public:
   void find(const BlocksOf<F>& blocks, const RayOf<F>& ray, MaskOf<F> rays, const IntOf<F> (&layer)[3]) {
-    visit_patches(blocks, rays & !hold(layer), layer, [&](const SharePatch& patch, MaskOf<F> here) {
-      const int log2 = patch.layers_log2;
-      for (int k = 0; k < 3; ++k) key_[k] = select(here, layer[k] >> log2, key_[k]);
-      shift_ = select(here, IntOf<F>{} + log2, shift_);
-      F at = all_lanes<F>(patch.level), slope{};
-      for (int k = 0; k < 3; ++k) {
-        at += patch.slope[k] * (ray.origin[k] - patch.center[k]);
-        slope += patch.slope[k] * ray.direction[k];
-      }
-      at_ = select(here, at, at_);
-      slope_ = select(here, slope, slope_);
-      bent_ = select(here, all_lanes<F>(patch.bent), bent_);
-    });
+    const IntOf<F> path = path_to(layer);
+    const MaskOf<F> came = rays & !((path & of_path_) == path_);
+    if (!any(came)) return;
+    const PartLines<F> part = lines_at(blocks, came, path);
+    const IntOf<F> layers = whole_part(part.half * 8.0F), of_path = -(layers * layers * layers);
+    F at = part.level, slope{};
+    for (int k = 0; k < 3; ++k) {
+      const F center = (to_float(layer[k] & -layers) * 0.25F + part.half) - 1.0F;
+      at += part.slope[k] * (ray.origin[k] - center);
+      slope += part.slope[k] * ray.direction[k];
+    }
+    assign(came, of_path_, of_path);
+    assign(came, path_, path & of_path);
+    assign(came, at_, at);
+    assign(came, slope_, slope);
+    assign(came, bent_, part.bent);
   }
 
   ShareLine<F> line() const { return {at_, slope_, -bent_, bent_}; }
@@ -102,11 +123,7 @@ class PatchLines {
   }
 
  private:
-  MaskOf<F> hold(const IntOf<F> (&layer)[3]) const {
-    return (layer[0] >> shift_ == key_[0]) & (layer[1] >> shift_ == key_[1]) & (layer[2] >> shift_ == key_[2]);
-  }
-
-  IntOf<F> key_[3] = {IntOf<F>{} - 1, IntOf<F>{} - 1, IntOf<F>{} - 1}, shift_{};
+  IntOf<F> path_ = IntOf<F>{} - 1, of_path_{};  // to the part: those bits of paths to its slots
   F at_{}, slope_{}, bent_{};
 };
 
@@ -119,7 +136,7 @@ struct Patches<float> {
   const SharePatch* patch = nullptr;
 
   void find(const BlocksOf<float>& blocks, bool ray, const int (&layer)[3]) {
-    visit_patches(blocks, ray, layer, [&](const SharePatch& found, bool) { patch = &found; });
+    if (ray) patch = &patch_at(*blocks.block, path_to(layer));
   }
   float coefficient(int i) const { return patch->coefficient[i]; }
   float center(int k) const { return patch->center[k]; }
@@ -134,9 +151,11 @@ struct Patches<PacketFloat> {
     static constexpr SharePatch none{};
     const SharePatch* patch[packet_lanes];
     for (const SharePatch*& p : patch) p = &none;
-    visit_patches(blocks, rays, layer, [&](const SharePatch& found, PacketInt here) {
-      for (unsigned left = lane_bits(here); left != 0; left &= left - 1) patch[__builtin_ctz(left)] = &found;
-    });
+    const PacketInt path = path_to(layer);
+    for (unsigned left = lane_bits(rays); left != 0; left &= left - 1) {
+      const int lane = __builtin_ctz(left);
+      patch[lane] = &patch_at(blocks.of(lane), path[lane]);
+    }
     for (int part = 0; part < floats_per_patch; part += lanes) {
       V16 rows[packet_lanes];
       for (int lane = 0; lane < packet_lanes; ++lane)
