@@ -11,23 +11,7 @@ namespace {
 
 constexpr int highest_degree = highest_far_degree + 1;
 
-constexpr std::array<Monomial, monomial_count> make_monomials() {
-  std::array<Monomial, monomial_count> m{};
-  std::size_t i = 0;
-  for (int d = 0; d <= highest_degree; ++d)
-    for (int a = d; a >= 0; --a)
-      for (int b = d - a; b >= 0; --b) m[i++] = {a, b, d - a - b};
-  return m;
-}
-
-constexpr auto table = make_monomials();
-
 constexpr std::size_t first_of_degree(int d) { return static_cast<std::size_t>(d * (d + 1) * (d + 2) / 6); }
-
-constexpr std::size_t index_of(int a, int b, int c) {
-  const int d = a + b + c, rest = d - a;
-  return first_of_degree(d) + static_cast<std::size_t>(rest * (rest + 1) / 2 + rest - b);
-}
 
 constexpr double factorial(int k) { return k <= 1 ? 1 : k * factorial(k - 1); }
 
@@ -57,9 +41,10 @@ constexpr std::array<std::array<Line, line_count>, 3> make_lines() {
     for (int sum = 0; sum <= highest_degree; ++sum)
       for (int p = 0, q = sum; p <= sum; ++p, --q, ++n)
         for (int e = 0; e + sum <= highest_degree; ++e)
-          lines[axis][n].at[static_cast<std::size_t>(e)] = static_cast<std::uint8_t>(axis == 0   ? index_of(e, p, q)
-                                                                                     : axis == 1 ? index_of(p, e, q)
-                                                                                                 : index_of(p, q, e));
+          lines[axis][n].at[static_cast<std::size_t>(e)] =
+              static_cast<std::uint8_t>(axis == 0   ? monomial_index(e, p, q)
+                                        : axis == 1 ? monomial_index(p, e, q)
+                                                    : monomial_index(p, q, e));
   }
   return lines;
 }
@@ -85,10 +70,6 @@ void shift_axis(Polynomial& p, int degree, std::size_t axis, double shift) {
 
 }  // namespace
 
-const std::array<Monomial, monomial_count> monomials = table;
-
-std::size_t monomial_index(int a, int b, int c) { return index_of(a, b, c); }
-
 // (x.r)^k |x|^(2j) as monomials: |x|^(2j) is a sum of squares of coordinates with multinomials.
 MomentTable::MomentTable(int exponent, int far_degree) : far_degree_(far_degree) {
   const double l = exponent / 2.0;
@@ -99,8 +80,8 @@ MomentTable::MomentTable(int exponent, int far_degree) : far_degree_(far_degree)
       for (std::size_t i = first_of_degree(k); i < monomials_to_degree(k); ++i)
         for (int a = 0; a <= j; ++a)
           for (int b = 0; a + b <= j; ++b) {
-            const Monomial m = table[i], squares{a, b, j - a - b};
-            const std::size_t to = index_of(m.a + 2 * squares.a, m.b + 2 * squares.b, m.c + 2 * squares.c);
+            const Monomial m = monomials[i], squares{a, b, j - a - b};
+            const std::size_t to = monomial_index(m.a + 2 * squares.a, m.b + 2 * squares.b, m.c + 2 * squares.c);
             terms_.push_back({static_cast<std::uint16_t>(first_moment + i), static_cast<std::uint16_t>(to),
                               gegenbauer_constant(l, k, j) * multinomial(m) * multinomial(squares)});
           }
@@ -133,7 +114,7 @@ FarField::Bounds FarField::bounds() const {
   for (std::size_t i = 1; i < monomials_to_degree(degree); ++i) b.f_variation += std::fabs(f[i]);
   // |grad x^a y^b z^c| <= a + b + c on the cube
   for (std::size_t i = 4; i < monomials_to_degree(degree + 1); ++i)
-    b.gradient_variation += std::fabs(potential[i]) * table[i].degree();
+    b.gradient_variation += std::fabs(potential[i]) * monomials[i].degree();
   return b;
 }
 

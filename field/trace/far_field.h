@@ -26,8 +26,18 @@ struct Monomial {
   int a, b, c;
   constexpr int degree() const { return a + b + c; }
 };
-extern const std::array<Monomial, monomial_count> monomials;
-std::size_t monomial_index(int a, int b, int c);
+inline constexpr std::array<Monomial, monomial_count> monomials = [] {
+  std::array<Monomial, monomial_count> m{};
+  std::size_t i = 0;
+  for (int d = 0; d <= highest_far_degree + 1; ++d)
+    for (int a = d; a >= 0; --a)
+      for (int b = d - a; b >= 0; --b) m[i++] = {a, b, d - a - b};
+  return m;
+}();
+constexpr std::size_t monomial_index(int a, int b, int c) {
+  const int d = a + b + c, rest = d - a;
+  return monomials_to_degree(d - 1) + static_cast<std::size_t>(rest * (rest + 1) / 2 + rest - b);
+}
 
 using Polynomial = std::array<double, monomial_count>;
 

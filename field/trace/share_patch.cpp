@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "field/trace/far_field.h"
@@ -186,23 +187,41 @@ void find_line(SharePatch& patch, SharePart& part) {
 // A monomial as z[axis] times one before it; its exponents, and the monomials with one factor less.
 struct Factors {
   std::size_t axis, without[3];
-  double exponent[3];
-};
-std::vector<Factors> factors_of_monomials() {
-  std::vector<Factors> all;
-  for (std::size_t m = 0; m < coefficient_count; ++m) {
-    const int of[3] = {monomials[m].a, monomials[m].b, monomials[m].c};
-    Factors f{};
+  int exponent[3];
+
+  constexpr explicit Factors(const Monomial& of) : axis(0), without{}, exponent{of.a, of.b, of.c} {
     for (std::size_t k = 0; k < 3; ++k) {
-      f.exponent[k] = of[k];
-      if (of[k] == 0) continue;
-      f.axis = k;
-      f.without[k] = monomial_index(of[0] - (k == 0), of[1] - (k == 1), of[2] - (k == 2));
+      if (exponent[k] == 0) continue;
+      axis = k;
+      without[k] = monomial_index(of.a - (k == 0), of.b - (k == 1), of.c - (k == 2));
     }
-    all.push_back(f);
   }
-  return all;
-}
+};
+
+// The value of a polynomial and its slopes, monomial after monomial.
+struct ValueAndSlopes {
+  const double (&z)[3];
+  double of_monomial[coefficient_count] = {1};
+  double value, slope[3] = {0, 0, 0};
+
+  template <std::size_t... Monomials>
+  ValueAndSlopes(const float (&coefficient)[coefficient_count], const double (&at)[3],
+                 std::index_sequence<Monomials...>)
+      : z(at), value(static_cast<double>(coefficient[0])) {
+    (add<Monomials + 1>(static_cast<double>(coefficient[Monomials + 1])), ...);
+  }
+
+ private:
+  template <std::size_t Number>
+  void add(double c) {
+    constexpr Factors f(monomials[Number]);
+    of_monomial[Number] = of_monomial[f.without[f.axis]] * z[f.axis];
+    value += c * of_monomial[Number];
+    if constexpr (f.exponent[0] > 0) slope[0] += c * f.exponent[0] * of_monomial[f.without[0]];
+    if constexpr (f.exponent[1] > 0) slope[1] += c * f.exponent[1] * of_monomial[f.without[1]];
+    if constexpr (f.exponent[2] > 0) slope[2] += c * f.exponent[2] * of_monomial[f.without[2]];
+  }
+};
 
 struct Cube {
   float center[3], half;
@@ -281,18 +300,10 @@ ShareAt share_at(const SharePatch& patch, const Vec3d& at) {
   const double scale = static_cast<double>(patch.inverse_half);
   double z[3];
   for (std::size_t k = 0; k < 3; ++k) z[k] = (at[k] - static_cast<double>(patch.center[k])) * scale;
-  static const std::vector<Factors> factors = factors_of_monomials();
-  double value[coefficient_count] = {1};
+  const ValueAndSlopes at_z(patch.coefficient, z, std::make_index_sequence<coefficient_count - 1>());
   ShareAt out;
-  out.share = static_cast<double>(patch.coefficient[0]);
-  for (std::size_t m = 1; m < coefficient_count; ++m) {
-    const Factors& f = factors[m];
-    value[m] = value[f.without[f.axis]] * z[f.axis];
-    const auto c = static_cast<double>(patch.coefficient[m]);
-    out.share += c * value[m];
-    for (std::size_t k = 0; k < 3; ++k) out.gradient[k] += c * f.exponent[k] * value[f.without[k]];
-  }
-  out.gradient = out.gradient * scale;
+  out.share = at_z.value;
+  for (std::size_t k = 0; k < 3; ++k) out.gradient[k] = at_z.slope[k] * scale;
   out.bend = static_cast<double>(patch.bend);
   out.error = static_cast<double>(patch.error);
   if (out.share >= 0 && out.share <= 1) return out;
