@@ -282,21 +282,25 @@ struct Marcher {
         if (left > 0.0F) model = max_of(model, step_to_zero(left, b, c));
       }
     }
-    F step{};
-    Mask open = active & (limit > 0.0F);
-    const auto try_step = [&](Mask sensible, F h) {
-      sensible = sensible & open;
-      if (!any(sensible)) return;
-      const Mask proved = sensible & stays_until(p, sign * h, sensible);
+    // Short steps end where the model does; long ones before, because their remainder grows faster than the model. A
+    // packet tries in each round what comes next for each of its rays.
+    constexpr int most_halvings = 5;
+    const F end = min_of(0.985F * model, 0.7F * most);
+    Mask whole = model > 0.8F * most, to_end = (end > 0.0F) & (end < 0.01F * p.distance);
+    F before_end = end * 0.86F, step{};
+    IntOf<F> halvings{};
+    for (Mask open = active & (limit > 0.0F);;) {
+      const F h = select(whole, most, select(to_end, end, before_end));
+      open = open & (whole | (h > 0.0F));
+      if (!any(open)) break;
+      const Mask proved = open & stays_until(p, sign * h, open), halved = !(whole | to_end);
       step = select(proved, h, step);
-      open = open & !proved;
-    };
-    try_step(model > 0.8F * most, most);
-    // Short steps end where the model does; long ones before, because their remainder grows faster than the model.
-    F h = min_of(0.985F * model, 0.7F * most);
-    try_step((h > 0.0F) & (h < 0.01F * p.distance), h);
-    h *= 0.86F;
-    for (int i = 0; i < 5 && any(open); ++i, h *= 0.5F) try_step(h > 0, h);
+      before_end = select(halved, 0.5F * before_end, before_end);
+      count(halved, halvings);
+      open = open & !proved & (halvings < most_halvings);
+      to_end = to_end & whole;
+      whole = Mask{};
+    }
     return step;
   }
 };
