@@ -11,7 +11,10 @@ class BlockSearch {
     static_assert(sizeof(BlockRays) + sizeof(Own) <= PacketMemory::of_rays);
     rays_ = reinterpret_cast<BlockRays*>(memory.rays);
     own_ = reinterpret_cast<Own*>(memory.rays + sizeof(BlockRays));
-    for (int i = 0; i < count; ++i) own_->slots[i].take_known(*cells[i].block);
+    for (int i = 0; i < count; ++i) {
+      own_->slots[i].take_known(*cells[i].block);
+      if constexpr (Rule == Angle::Patched) ask_for_eight(cells[i].block->parts);
+    }
   }
 
   // As first_root() of each of these rays.
