@@ -190,7 +190,7 @@ class Measurement {
     out_.largest_error = built.largest_error;
   }
 
-  // The same frame with the plain sum and with other rules, in turns.
+  // One further sample with the plain sum and with other rules, in turns.
   void compare_rules() {
     struct Rule {
       const char* name;
@@ -208,19 +208,15 @@ class Measurement {
     };
     const auto sum = with("sum");
     if (!sum) return;
-    const auto plain = engine_of(*sum->surfaces);
-    shaded_frame(*plain, workload_, frame_);
-    plain->refine();
+    further_sample(*sum);
     for (const Rule& rule : rules) {
       const auto ready = with(rule.text);
       if (!ready) continue;
-      const auto engine = engine_of(*ready->surfaces);
-      shaded_frame(*engine, workload_, frame_);
-      engine->refine();
+      further_sample(*ready);
       std::vector<Cost> ours, sums;
       for (int round = 0; round < settings_.rounds; ++round) {
-        ours.push_back(cost_of([&] { shaded_frame(*engine, workload_, frame_); }));
-        sums.push_back(cost_of([&] { shaded_frame(*plain, workload_, frame_); }));
+        ours.push_back(further_sample(*ready));
+        sums.push_back(further_sample(*sum));
       }
       out_.rules.push_back({rule.name, median_ratio(ours, sums)});
     }
