@@ -129,7 +129,8 @@ class PatchLines {
   }
 
  private:
-  IntOf<F> path_ = IntOf<F>{} - 1, of_path_{};  // to the part: those bits of paths to its slots
+  // To the part: the bits that paths to its slots share, all but three for each halving within it, and which they are.
+  IntOf<F> path_ = IntOf<F>{} - 1, of_path_{};
   F at_{}, slope_{}, bent_{};
 };
 
