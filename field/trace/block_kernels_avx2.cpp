@@ -10,6 +10,7 @@ namespace {
 #include "field/trace/kernels/native.h"
 #include "field/trace/kernels/sixteen.h"
 #include "field/trace/kernels/lanes.h"
+#include "field/trace/kernels/packet_values.h"
 #include "field/trace/kernels/per_ray.h"
 #include "field/trace/kernels/vec3.h"
 #include "field/trace/kernels/sums.h"

@@ -6,10 +6,10 @@ inline float of_step(const float* numbers, int, int step) { return numbers[step]
 inline PacketFloat of_step(const float* numbers, int count, PacketInt step) {
 #if defined(__AVX512F__)
   if (count <= 2 * lanes) {
-    PacketFloat first, second;
+    Native first, second;
     __builtin_memcpy(&first, numbers, sizeof first);
     __builtin_memcpy(&second, numbers + lanes, sizeof second);
-    return __builtin_shuffle(first, second, step);
+    return __builtin_shuffle(first, second, static_cast<NativeInt>(step));
   }
 #else
   if (count <= lanes) return picked(numbers, step);
@@ -25,18 +25,18 @@ struct EightNumbers {
 // Together for each lane: gathers take a machine many times as long. Rows have lanes 4 k + i in quarter k of row i.
 template <class AddressOfLane>
 inline EightNumbers<PacketFloat> eight_of_lanes(const AddressOfLane& of_lane) {
-  PacketFloat low[4], high[4];
+  Native low[4], high[4];
   for (int i = 0; i < 4; ++i) {
 #if defined(__AVX512F__)
     const auto two = [&](int lane) {
       const V8 a = load8(of_lane(lane)), b = load8(of_lane(lane + 4));
       return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     };
-    const PacketFloat a = two(i), b = two(i + 8);
+    const Native a = two(i), b = two(i + 8);
     low[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27);
     high[i] = __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31);
 #elif defined(__AVX__)
-    const PacketFloat a = load8(of_lane(i)), b = load8(of_lane(i + 4));
+    const Native a = load8(of_lane(i)), b = load8(of_lane(i + 4));
     low[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11);
     high[i] = __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
 #else
@@ -44,10 +44,10 @@ inline EightNumbers<PacketFloat> eight_of_lanes(const AddressOfLane& of_lane) {
     high[i] = load4(of_lane(i) + 4);
 #endif
   }
-  EightNumbers<PacketFloat> columns;
-  transpose_quarters(low, columns.low);
-  transpose_quarters(high, columns.high);
-  return columns;
+  Native of_low[4], of_high[4];
+  transpose_quarters(low, of_low);
+  transpose_quarters(high, of_high);
+  return {{of_low[0], of_low[1], of_low[2], of_low[3]}, {of_high[0], of_high[1], of_high[2], of_high[3]}};
 }
 
 // Four numbers at an entry, and four at the next one.

@@ -83,14 +83,14 @@ class BlockSearch {
   const FieldLevel& any_level(const LaneSet& rays) const { return level_of(rays.lowest()); }
 
   // Those that wait, in free lanes.
-  PacketInt seat(Lanes& at, LaneSet& waiting, PacketRays& rays, LevelOf<PacketFloat>& level) const {
-    const PacketInt seated = at.seat(waiting);
+  PacketMask seat(Lanes& at, LaneSet& waiting, PacketRays& rays, LevelOf<PacketFloat>& level) const {
+    const PacketMask seated = at.seat(waiting);
     load_rays(*rays_, at, seated, rays);
     at.for_each(seated, [&](int lane, int ray) { level.set(lane, level_of(ray), rays_->cell[ray]); });
     return seated;
   }
 
-  void load_around(const Lanes& at, PacketInt which, AroundOf<PacketFloat>& to) const {
+  void load_around(const Lanes& at, PacketMask which, AroundOf<PacketFloat>& to) const {
     V16 rows[packet_lanes] = {};
     alignas(64) float place[3][packet_lanes] = {};
     unsigned known = 0;
@@ -101,7 +101,7 @@ class BlockSearch {
       __builtin_memcpy(&rows[lane], &around->field, sizeof rows[lane]);
       for (int k = 0; k < 3; ++k) place[k][lane] = around->place[k];
     });
-    to.known = mask_of(known);
+    to.known = PacketMask(known);
     if (known == 0) return;
     PacketFloat columns[around_numbers];
     find_columns(rows, columns);
@@ -117,14 +117,14 @@ class BlockSearch {
     LevelOf<PacketFloat> level(any_level(leaving));
     while (!leaving.empty()) {
       Lanes at;
-      const PacketInt here = seat(at, leaving, rays, level);
-      const QueryOf<PacketFloat> query{at.load(r.from), at.load(r.to), any_root_, false, here, PacketInt{}};
+      const PacketMask here = seat(at, leaving, rays, level);
+      const QueryOf<PacketFloat> query{at.load(r.from), at.load(r.to), any_root_, false, here, PacketMask{}};
       RootOf<PacketFloat> root;
       PacketFloat front = query.t0;
       AroundOf<PacketFloat> around;
       load_around(at, here, around);
-      const PacketInt go_on = leave_surface<Rule>(block_, BlocksOf<PacketFloat>{cells_, at.load(r.cell)}, level, rays,
-                                                  around, query, here, root, front);
+      const PacketMask go_on = leave_surface<Rule>(block_, BlocksOf<PacketFloat>{cells_, at.load(r.cell)}, level, rays,
+                                                   around, query, here, root, front);
       at.store(here, r.from, front);
       at.store(here & root.hit, r.t, root.t);
       at.add_to(r.hit, root.hit);
@@ -154,10 +154,8 @@ class BlockSearch {
     const BlockRays& r = *rays_;
     open.for_each_group<packet_lanes>([&](int first) {
       const PacketRays ray = rays_of_group(first);
-      PacketInt cell;
-      __builtin_memcpy(&cell, r.cell + first, sizeof cell);
-      const BlocksOf<PacketFloat> blocks{cells_, cell};
-      const SlotBits<PacketFloat> slots(blocks, own_->slots, mask_of(open.group<packet_lanes>(first)));
+      const BlocksOf<PacketFloat> blocks{cells_, load_native(r.cell + first)};
+      const SlotBits<PacketFloat> slots(blocks, own_->slots, PacketMask(open.group<packet_lanes>(first)));
       new (&own_->runs[first / packet_lanes])
           RunsOfGroup(blocks, slots, ray, load_native(r.from + first), load_native(r.to + first));
     });
@@ -167,10 +165,10 @@ class BlockSearch {
   LaneSet next_runs(const LaneSet& open) {
     LaneSet found;
     open.for_each_group<packet_lanes>([&](int first) {
-      const PacketInt asked = mask_of(open.group<packet_lanes>(first));
+      const PacketMask asked = PacketMask(open.group<packet_lanes>(first));
       Run<PacketFloat> run{load_native(rays_->begin + first), load_native(rays_->end + first)};
       if constexpr (Rule == Angle::Patched) run.share = line_of_group(first);
-      found.add_group(first, lane_bits(own_->runs[first / packet_lanes].next(rays_of_group(first), asked, run)));
+      found.add_group(first, own_->runs[first / packet_lanes].next(rays_of_group(first), asked, run).bits());
       store(run.begin, rays_->begin + first);
       store(run.end, rays_->end + first);
       if constexpr (Rule == Angle::Patched) {
@@ -194,7 +192,7 @@ class BlockSearch {
     Lanes at;
     for (;;) {
       if (!waiting.empty()) {
-        const PacketInt seated = seat(at, waiting, rays, level);
+        const PacketMask seated = seat(at, waiting, rays, level);
         angle.load_run(at, seated, r);
         const PacketFloat begin = at.load(r.begin), end = at.load(r.end);
         search.restart(seated, begin, end);
@@ -203,11 +201,11 @@ class BlockSearch {
         approach.near = approach.near & !seated;
         approach.surely_inside = approach.surely_inside & !seated;
       }
-      const PacketInt open = at.taken();
+      const PacketMask open = at.taken();
       if (!any(open)) return near;
-      const PacketInt ended = open & !approach.step(open);
+      const PacketMask ended = open & !approach.step(open);
       if (!any(ended)) continue;
-      const PacketInt now_near = ended & approach.near, inside = ended & approach.surely_inside;
+      const PacketMask now_near = ended & approach.near, inside = ended & approach.surely_inside;
       at.store(now_near, r.front, search.front);
       at.store(now_near, r.guess, approach.guess);
       at.store(inside, r.t, search.inside.t);
@@ -232,7 +230,7 @@ class BlockSearch {
     Lanes at;
     for (;;) {
       if (!waiting.empty()) {
-        const PacketInt seated = seat(at, waiting, rays, level);
+        const PacketMask seated = seat(at, waiting, rays, level);
         angle.load_share(at, seated, r);
         const PacketFloat front = at.load(r.front), end = at.load(Rule == Angle::Patched ? r.fine_end : r.end);
         search.restart(seated, front, end);
@@ -240,11 +238,11 @@ class BlockSearch {
         decision.samples = select(seated, PacketInt{}, decision.samples);
         decision.hit = decision.hit & !seated;
       }
-      const PacketInt open = at.taken();
+      const PacketMask open = at.taken();
       if (!any(open)) return met;
-      const PacketInt ended = open & !decision.step(open);
+      const PacketMask ended = open & !decision.step(open);
       if (!any(ended)) continue;
-      const PacketInt hit = ended & decision.hit;
+      const PacketMask hit = ended & decision.hit;
       at.store(hit, r.t, decision.t);
       at.store(ended, r.undecided, min_of(at.load(r.undecided), decision.undecided()));
       at.add(ended, r.evaluations, decision.samples);

@@ -35,11 +35,7 @@ struct LevelOf<PacketFloat> {
   }
   const FieldLevel& operator[](int lane) const { return *of_[lane]; }
   // The lanes whose level is that of this one.
-  unsigned like(int lane) const {
-    PacketInt cells;
-    __builtin_memcpy(&cells, cell_, sizeof cells);
-    return lane_bits(cells == cell_[lane]);
-  }
+  unsigned like(int lane) const { return (PacketInt(load_native(cell_)) == cell_[lane]).bits(); }
   PacketFloat f_error() const { return load_native(f_error_); }
   PacketFloat g_error() const { return load_native(g_error_); }
   PacketFloat far_bend() const { return load_native(far_bend_); }

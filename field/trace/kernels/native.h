@@ -38,6 +38,9 @@ inline V8 load8(const float* p) {
 inline Native load_native(const float* p) {
   return *static_cast<const Native*>(__builtin_assume_aligned(p, sizeof(Native)));
 }
+inline NativeInt load_native(const int* p) {
+  return *static_cast<const NativeInt*>(__builtin_assume_aligned(p, sizeof(NativeInt)));
+}
 
 // a > b ? a : b and a < b ? a : b: what the instructions of all sets do, also where a lane is no number.
 #if defined(__AVX512F__)

@@ -22,7 +22,7 @@ struct BlockRays {
 class Lanes {
  public:
   // In as many free lanes as there are rays; takes these away from the set. Returns the lanes.
-  PacketInt seat(LaneSet& waiting) {
+  PacketMask seat(LaneSet& waiting) {
     alignas(64) int at[packet_lanes];
     __builtin_memcpy(at, &at_, sizeof at);
     const unsigned all_free = ~taken_ & all_lane_bits;
@@ -34,39 +34,39 @@ class Lanes {
     const unsigned seated = all_free & ~free;
     __builtin_memcpy(&at_, at, sizeof at_);
     taken_ |= seated;
-    return mask_of(seated);
+    return PacketMask(seated);
   }
-  void leave(PacketInt ended) { taken_ &= ~lane_bits(ended); }
-  PacketInt taken() const { return mask_of(taken_); }
+  void leave(PacketMask ended) { taken_ &= ~ended.bits(); }
+  PacketMask taken() const { return PacketMask(taken_); }
 
   PacketFloat load(const float* of_packet) const { return gather(of_packet, at_); }
   PacketInt load(const int* of_packet) const { return gather(of_packet, at_); }
-  void load(PacketInt which, const float* of_packet, PacketFloat& to) const { assign(which, to, load(of_packet)); }
+  void load(PacketMask which, const float* of_packet, PacketFloat& to) const { assign(which, to, load(of_packet)); }
 #if defined(__AVX512F__)
-  void store(PacketInt which, float* of_packet, PacketFloat v) const {
-    __builtin_ia32_scattersiv16sf(of_packet, static_cast<unsigned short>(lane_bits(which)), at_, v, 4);
+  void store(PacketMask which, float* of_packet, PacketFloat v) const {
+    __builtin_ia32_scattersiv16sf(of_packet, static_cast<unsigned short>(which.bits()), at_, v, 4);
   }
-  void add(PacketInt which, int* of_packet, PacketInt v) const {
-    const PacketInt sum = __builtin_ia32_gathersiv16si(PacketInt{}, of_packet, at_, -1, 4) + v;
-    __builtin_ia32_scattersiv16si(of_packet, static_cast<unsigned short>(lane_bits(which)), at_, sum, 4);
+  void add(PacketMask which, int* of_packet, PacketInt v) const {
+    const PacketInt sum = __builtin_ia32_gathersiv16si(NativeInt{}, of_packet, at_, -1, 4) + v;
+    __builtin_ia32_scattersiv16si(of_packet, static_cast<unsigned short>(which.bits()), at_, sum, 4);
   }
 #else
-  void store(PacketInt which, float* of_packet, PacketFloat v) const {
+  void store(PacketMask which, float* of_packet, PacketFloat v) const {
     for_each(which, [&](int lane, int ray) { of_packet[ray] = v[lane]; });
   }
-  void add(PacketInt which, int* of_packet, PacketInt v) const {
+  void add(PacketMask which, int* of_packet, PacketInt v) const {
     for_each(which, [&](int lane, int ray) { of_packet[ray] += v[lane]; });
   }
 #endif
   // The rays in these lanes.
-  void add_to(LaneSet& rays, PacketInt which) const {
+  void add_to(LaneSet& rays, PacketMask which) const {
     for_each(which, [&](int, int ray) { rays.add(ray); });
   }
 
   // Calls visit(lane, ray).
   template <class Visit>
-  void for_each(PacketInt which, const Visit& visit) const {
-    for (unsigned left = lane_bits(which); left != 0; left &= left - 1) {
+  void for_each(PacketMask which, const Visit& visit) const {
+    for (unsigned left = which.bits(); left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left);
       visit(lane, at_[lane]);
     }

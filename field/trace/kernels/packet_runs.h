@@ -1,6 +1,6 @@
 // The rays of a packet on their runs, and what gives the angle there. Part of block_kernels_<set>.cpp.
 
-inline void load_rays(const BlockRays& r, const Lanes& at, PacketInt which, PacketRays& rays) {
+inline void load_rays(const BlockRays& r, const Lanes& at, PacketMask which, PacketRays& rays) {
   for (int k = 0; k < 3; ++k) {
     at.load(which, r.origin[k], rays.origin[k]);
     at.load(which, r.direction[k], rays.direction[k]);
@@ -11,8 +11,8 @@ inline void load_rays(const BlockRays& r, const Lanes& at, PacketInt which, Pack
 template <Angle Rule>
 struct AngleOnRuns {
   AngleSource<Rule, PacketFloat> source;
-  void load_run(const Lanes&, PacketInt, const BlockRays&) {}
-  void load_share(const Lanes&, PacketInt, const BlockRays&) {}
+  void load_run(const Lanes&, PacketMask, const BlockRays&) {}
+  void load_share(const Lanes&, PacketMask, const BlockRays&) {}
 };
 template <>
 struct AngleOnRuns<Angle::Patched> {
@@ -21,14 +21,14 @@ struct AngleOnRuns<Angle::Patched> {
   AngleOnRuns() = default;
   AngleOnRuns(const AngleOnRuns&) = delete;
   AngleOnRuns& operator=(const AngleOnRuns&) = delete;
-  void load_run(const Lanes& at, PacketInt which, const BlockRays& r) {
+  void load_run(const Lanes& at, PacketMask which, const BlockRays& r) {
     const ShareOnRun<PacketFloat> any(
         ShareLine<PacketFloat>{at.load(r.line[0]), at.load(r.line[1]), at.load(r.line[2]), at.load(r.line[3])});
     assign(which, share.way.c[0], any.way.c[0]);
     assign(which, share.way.c[1], any.way.c[1]);
     assign(which, share.spread, any.spread);
   }
-  void load_share(const Lanes& at, PacketInt which, const BlockRays& r) {
+  void load_share(const Lanes& at, PacketMask which, const BlockRays& r) {
     at.load(which, r.front, share.from);
     for (int i = 0; i <= SharePatch::degree; ++i) at.load(which, r.share[i], share.way.c[i]);
   }
@@ -38,7 +38,7 @@ struct AngleOnRuns<Angle::Patched> {
 inline void find_shares(const CellRays* cells, LaneSet waiting, BlockRays& r) {
   while (!waiting.empty()) {
     Lanes at;
-    const PacketInt here = at.seat(waiting);
+    const PacketMask here = at.seat(waiting);
     PacketRays rays;
     load_rays(r, at, here, rays);
     const ShareInPatch<PacketFloat> found(BlocksOf<PacketFloat>{cells, at.load(r.cell)}, rays, at.load(r.front), here);

@@ -83,14 +83,14 @@ struct PacketSummer {
 
   template <int Exponent>
   void find_in_lanes(const SourceList& sources, int exponent, unsigned lanes_of, PacketFloat (&columns)[lanes]) const {
-    PacketFloat sums[12];
+    Native sums[12];
     sums_in_rays(
         sources, at,
-        [&](Native share, Native radius, const Away& d, PacketFloat(&a)[12]) {
+        [&](Native share, Native radius, const Away& d, Native(&a)[12]) {
           add_sources<Exponent>(share, radius, exponent, d, rays.direction[0], rays.direction[1], rays.direction[2], a);
         },
         sums);
-    const PacketInt which = mask_of(lanes_of);
+    const PacketMask which = PacketMask(lanes_of);
     for (int i = 0; i < 11; ++i) assign(which, columns[i], sums[i]);
     assign(which, columns[lanes - 1], sums[11]);
   }
@@ -101,7 +101,7 @@ struct PacketSummer {
     if (having == active) return add_list(m, columns, rays.direction, out);
     RaySums<PacketFloat> more = out;
     add_list(m, columns, rays.direction, more);
-    assign(mask_of(having), out, more);
+    assign(PacketMask(having), out, more);
   }
 };
 
@@ -149,7 +149,7 @@ class PacketFar {
   }
 
   void find_in_lanes(const FieldLevel& level, unsigned lanes_of) {
-    const PacketInt which = mask_of(lanes_of);
+    const PacketMask which = PacketMask(lanes_of);
     for (int k = 0; k < 4; ++k) {
       const FarSlope<PacketFloat> far = far_polynomial(level, OneOfFour{level.far + k}, p_[0], p_[1], p_[2]);
       assign(which, columns_[k], far.value);
@@ -163,8 +163,8 @@ class PacketFar {
 
 // Adds the sources of the levels, and their far fields, at places on the rays; `nearest`: the largest 1 / d^2.
 inline void add_level(const LevelOf<PacketFloat>& levels, int degree, const OnRay<PacketFloat> (&p)[3],
-                      const PacketRays& rays, PacketInt active, RaySums<PacketFloat>& sums, PacketFloat& nearest) {
-  const unsigned lanes_of = lane_bits(active);
+                      const PacketRays& rays, PacketMask active, RaySums<PacketFloat>& sums, PacketFloat& nearest) {
+  const unsigned lanes_of = active.bits();
   if (lanes_of == 0) return;
   const LevelGroups groups(levels, lanes_of);
   const PacketFloat at[3] = {p[0].at, p[1].at, p[2].at};

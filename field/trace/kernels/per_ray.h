@@ -5,12 +5,6 @@
 // however many lanes there are. What one ray does behind an `if`, a packet does for all lanes when any of them needs
 // it, and keeps where a mask is set.
 
-// As many rays as a register has lanes.
-inline constexpr int packet_lanes = native_lanes;
-inline constexpr unsigned all_lane_bits = (1U << packet_lanes) - 1;
-using PacketFloat = Native;
-using PacketInt = NativeInt;
-
 // Such rays in the coordinates of a block, and memory for one search on them at a time.
 struct PacketRays {
   PacketFloat origin[3], direction[3];
@@ -27,7 +21,7 @@ struct PerRay<float> {
 };
 template <>
 struct PerRay<PacketFloat> {
-  using Mask = PacketInt;  // 0 or -1
+  using Mask = PacketMask;
   using Int = PacketInt;
   using Ray = PacketRays;
 };
@@ -39,7 +33,7 @@ template <class F>
 using RayOf = typename PerRay<F>::Ray;
 
 inline bool any(bool mask) { return mask; }
-inline bool any(PacketInt mask) { return lane_bits(mask) != 0; }
+inline bool any(PacketMask mask) { return mask.bits() != 0; }
 
 template <class T>
 inline T select(bool mask, const T& a, const T& b) {
@@ -51,32 +45,33 @@ template <class T>
 inline void assign(bool mask, T& to, const T& from) {
   if (mask) to = from;
 }
-inline void assign(PacketInt mask, PacketFloat& to, PacketFloat from) { to = select(mask, from, to); }
-inline void assign(PacketInt mask, PacketInt& to, PacketInt from) { to = select(mask, from, to); }
+inline void assign(PacketMask mask, PacketFloat& to, PacketFloat from) { to = select(mask, from, to); }
+inline void assign(PacketMask mask, PacketInt& to, PacketInt from) { to = select(mask, from, to); }
+inline void assign(PacketMask mask, PacketMask& to, PacketMask from) { to = (mask & from) | (to & !mask); }
 
 inline void count(bool mask, int& number) { number += mask ? 1 : 0; }
-inline void count(PacketInt mask, PacketInt& number) { number -= mask; }
+inline void count(PacketMask mask, PacketInt& number) { number = select(mask, number + 1, number); }
 
 inline PacketFloat max_of(PacketFloat a, PacketFloat b) { return larger(a, b); }
-inline PacketFloat max_of(PacketFloat a, float b) { return larger(a, PacketFloat{} + b); }
-inline PacketFloat max_of(float a, PacketFloat b) { return larger(PacketFloat{} + a, b); }
+inline PacketFloat max_of(PacketFloat a, float b) { return larger(a, PacketFloat(b)); }
+inline PacketFloat max_of(float a, PacketFloat b) { return larger(PacketFloat(a), b); }
 inline PacketFloat min_of(PacketFloat a, PacketFloat b) { return smaller(a, b); }
-inline PacketFloat min_of(PacketFloat a, float b) { return smaller(a, PacketFloat{} + b); }
-inline PacketFloat min_of(float a, PacketFloat b) { return smaller(PacketFloat{} + a, b); }
+inline PacketFloat min_of(PacketFloat a, float b) { return smaller(a, PacketFloat(b)); }
+inline PacketFloat min_of(float a, PacketFloat b) { return smaller(PacketFloat(a), b); }
 inline PacketFloat abs_of(PacketFloat a) {
-  return reinterpret_cast<PacketFloat>(reinterpret_cast<PacketInt>(a) & 0x7fffffff);
+  return reinterpret_cast<Native>(reinterpret_cast<NativeInt>(static_cast<Native>(a)) & 0x7fffffff);
 }
 
 template <class F>
 inline F all_lanes(float v) {
-  return F{} + v;
+  return v;
 }
 
 // Towards 0.
 inline int whole_part(float v) { return static_cast<int>(v); }
-inline PacketInt whole_part(PacketFloat v) { return __builtin_convertvector(v, PacketInt); }
+inline PacketInt whole_part(PacketFloat v) { return __builtin_convertvector(static_cast<Native>(v), NativeInt); }
 inline float to_float(int v) { return static_cast<float>(v); }
-inline PacketFloat to_float(PacketInt v) { return __builtin_convertvector(v, PacketFloat); }
+inline PacketFloat to_float(PacketInt v) { return __builtin_convertvector(static_cast<NativeInt>(v), Native); }
 
 inline float gather(const float* table, int index) { return table[index]; }
 template <class V, class T>
@@ -87,20 +82,20 @@ inline V gather_lanes(const T* table, PacketInt index) {
 }
 inline PacketFloat gather(const float* table, PacketInt index) {
 #if defined(__AVX512F__)
-  return __builtin_ia32_gathersiv16sf(PacketFloat{}, table, index, -1, 4);
+  return __builtin_ia32_gathersiv16sf(Native{}, table, index, -1, 4);
 #elif defined(__AVX2__)
-  return __builtin_ia32_gathersiv8sf(PacketFloat{}, table, index, reinterpret_cast<PacketFloat>(PacketInt{} - 1), 4);
+  return __builtin_ia32_gathersiv8sf(Native{}, table, index, reinterpret_cast<Native>(NativeInt{} - 1), 4);
 #else
-  return gather_lanes<PacketFloat>(table, index);
+  return gather_lanes<Native>(table, index);
 #endif
 }
 inline PacketInt gather(const int* table, PacketInt index) {
 #if defined(__AVX512F__)
-  return __builtin_ia32_gathersiv16si(PacketInt{}, table, index, -1, 4);
+  return __builtin_ia32_gathersiv16si(NativeInt{}, table, index, -1, 4);
 #elif defined(__AVX2__)
-  return __builtin_ia32_gathersiv8si(PacketInt{}, table, index, PacketInt{} - 1, 4);
+  return __builtin_ia32_gathersiv8si(NativeInt{}, table, index, NativeInt{} - 1, 4);
 #else
-  return gather_lanes<PacketInt>(table, index);
+  return gather_lanes<NativeInt>(table, index);
 #endif
 }
 // An entry of a table, and the next one.
@@ -111,26 +106,28 @@ struct Neighbours {
 inline Neighbours<float> neighbours_at(const float* table, int index) { return {table[index], table[index + 1]}; }
 // Both together, as one number of twice the size: a gather takes its time for each number, whatever its size.
 #if defined(__AVX512F__)
-inline Neighbours<PacketFloat> neighbours_at(const float* table, PacketInt index) {
+inline Neighbours<PacketFloat> neighbours_at(const float* table, PacketInt at) {
   using Pairs = double __attribute__((vector_size(64)));
+  const NativeInt index = at;
   const auto pairs = [&](auto of) {
-    return reinterpret_cast<PacketFloat>(__builtin_ia32_gathersiv8df(Pairs{}, table, of, -1, 4));
+    return reinterpret_cast<Native>(__builtin_ia32_gathersiv8df(Pairs{}, table, of, -1, 4));
   };
-  const PacketFloat a = pairs(__builtin_shufflevector(index, index, 0, 1, 2, 3, 4, 5, 6, 7)),
-                    b = pairs(__builtin_shufflevector(index, index, 8, 9, 10, 11, 12, 13, 14, 15));
+  const Native a = pairs(__builtin_shufflevector(index, index, 0, 1, 2, 3, 4, 5, 6, 7)),
+               b = pairs(__builtin_shufflevector(index, index, 8, 9, 10, 11, 12, 13, 14, 15));
   return {__builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30),
           __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31)};
 }
 #elif defined(__AVX2__)
-inline Neighbours<PacketFloat> neighbours_at(const float* table, PacketInt index) {
+inline Neighbours<PacketFloat> neighbours_at(const float* table, PacketInt at) {
   using Pairs = double __attribute__((vector_size(32)));
-  const Pairs all = reinterpret_cast<Pairs>(PacketInt{} - 1);
+  const Pairs all = reinterpret_cast<Pairs>(NativeInt{} - 1);
+  const NativeInt index = at;
   const auto pairs = [&](auto of) {
-    return reinterpret_cast<PacketFloat>(
+    return reinterpret_cast<Native>(
         __builtin_ia32_gathersiv4df(Pairs{}, reinterpret_cast<const double*>(table), of, all, 4));
   };
-  const PacketFloat a = pairs(__builtin_shufflevector(index, index, 0, 1, 2, 3)),
-                    b = pairs(__builtin_shufflevector(index, index, 4, 5, 6, 7));
+  const Native a = pairs(__builtin_shufflevector(index, index, 0, 1, 2, 3)),
+               b = pairs(__builtin_shufflevector(index, index, 4, 5, 6, 7));
   return {__builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14),
           __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15)};
 }
@@ -146,31 +143,31 @@ inline V picked_lanes(const T* table, PacketInt index) {
 #if defined(__AVX512F__)
   V all;
   __builtin_memcpy(&all, table, sizeof all);
-  return __builtin_shuffle(all, index);
+  return __builtin_shuffle(all, static_cast<NativeInt>(index));
 #elif defined(__AVX2__)
   V low, high;
   __builtin_memcpy(&low, table, sizeof low);
   __builtin_memcpy(&high, table + packet_lanes, sizeof high);
-  return __builtin_shuffle(low, high, index);
+  return __builtin_shuffle(low, high, static_cast<NativeInt>(index));
 #else
   return gather_lanes<V>(table, index);
 #endif
 }
-inline PacketInt picked(const int (&table)[16], PacketInt index) { return picked_lanes<PacketInt>(table, index); }
-inline PacketFloat picked(const float* table, PacketInt index) { return picked_lanes<PacketFloat>(table, index); }
+inline PacketInt picked(const int (&table)[16], PacketInt index) { return picked_lanes<NativeInt>(table, index); }
+inline PacketFloat picked(const float* table, PacketInt index) { return picked_lanes<Native>(table, index); }
 
 inline int bits_of(float v) {
   int bits;
   __builtin_memcpy(&bits, &v, sizeof bits);
   return bits;
 }
-inline PacketInt bits_of(PacketFloat v) { return reinterpret_cast<PacketInt>(v); }
+inline PacketInt bits_of(PacketFloat v) { return reinterpret_cast<NativeInt>(static_cast<Native>(v)); }
 inline float from_bits(int bits) {
   float v;
   __builtin_memcpy(&v, &bits, sizeof v);
   return v;
 }
-inline PacketFloat from_bits(PacketInt bits) { return reinterpret_cast<PacketFloat>(bits); }
+inline PacketFloat from_bits(PacketInt bits) { return reinterpret_cast<Native>(static_cast<NativeInt>(bits)); }
 
 // q^(-1/k) for q > 0 to some 1e-5: a guess from the exponent bits, then Newton's iteration y (1 + (1 - q y^k) / k).
 // Root 0 in the template means known only at run time.

@@ -107,16 +107,18 @@ struct FullSummerInRays {
   FullSums<PacketFloat>& out;
   template <int Exponent>
   void add(const float* group, int groups, int exponent) const {
-    PacketFloat sums[17];
+    Native sums[17];
     sums_in_rays(
         SourceList{group, groups}, p,
-        [&](Native share, Native radius, const Away& d, PacketFloat(&a)[17]) {
+        [&](Native share, Native radius, const Away& d, Native(&a)[17]) {
           add_to_full<Exponent>(share, radius, exponent, d, a);
           a[16] = larger(a[16], d.inverse);
         },
         sums);
     nearest = larger(nearest, sums[16]);
-    add_full_list(static_cast<float>(Exponent > 0 ? Exponent : exponent), sums, out);
+    PacketFloat in_lanes[16];
+    for (int i = 0; i < 16; ++i) in_lanes[i] = sums[i];
+    add_full_list(static_cast<float>(Exponent > 0 ? Exponent : exponent), in_lanes, out);
   }
 };
 

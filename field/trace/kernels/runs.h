@@ -54,14 +54,15 @@ class SlotBits<PacketFloat> {
  public:
   SlotBits() = default;
   // `words`: of each cell; `rays`: those that may be asked for.
-  SlotBits(const BlocksOf<PacketFloat>& blocks, SlotWords* words, PacketInt rays)
+  SlotBits(const BlocksOf<PacketFloat>& blocks, SlotWords* words, PacketMask rays)
       : cells_(blocks.cells), words_(words), place_(blocks.cell * ints_per_cell) {
-    const int cell = blocks.cell[__builtin_ctz(lane_bits(rays))];
+    const int cell = blocks.cell[__builtin_ctz(rays.bits())];
     if (!any(rays & (blocks.cell != cell))) of_all_ = &words[cell];
     find_known();
   }
-  PacketInt at(PacketInt address, PacketInt active) {
-    const PacketInt octant = octant_of(address), unknown = active & ((known_ >> octant & 1) == 0);
+  PacketMask at(PacketInt address, PacketMask active) {
+    const PacketInt octant = octant_of(address);
+    const PacketMask unknown = active & ((known_ >> octant & 1) == 0);
     if (any(unknown)) need(unknown, octant);
     return (word(address >> 5) >> (address & 31) & 1) != 0;
   }
@@ -74,8 +75,8 @@ class SlotBits<PacketFloat> {
     return of_all_ != nullptr ? picked(of_all_->words, index) : gather(ints(), place_ + index);
   }
   void find_known() { known_ = gather(&words_->known, place_); }
-  [[gnu::noinline, gnu::cold]] void need(PacketInt rays, PacketInt octant) {
-    for (unsigned left = lane_bits(rays); left != 0; left &= left - 1) {
+  [[gnu::noinline, gnu::cold]] void need(PacketMask rays, PacketInt octant) {
+    for (unsigned left = rays.bits(); left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left), cell = place_[lane] / ints_per_cell;
       words_[cell].need(*cells_[cell].block, octant[lane]);
     }

@@ -58,7 +58,7 @@ struct SampleOf : SampleShare<Rule, F> {
 
 // The samples of some rays of a packet.
 template <Angle Rule>
-inline void assign(PacketInt mask, SampleOf<Rule, PacketFloat>& to, const SampleOf<Rule, PacketFloat>& from) {
+inline void assign(PacketMask mask, SampleOf<Rule, PacketFloat>& to, const SampleOf<Rule, PacketFloat>& from) {
   using Sample = SampleOf<Rule, PacketFloat>;
   for (PacketFloat Sample::*part :
        {&Sample::t, &Sample::y, &Sample::distance, &Sample::residual, &Sample::nominal, &Sample::margin, &Sample::raise,

@@ -73,11 +73,11 @@ inline PartLines<float> lines_at(const BlocksOf<float>& blocks, bool, int path) 
   const SharePart& part = part_at(*blocks.block, path);
   return {part.half, part.level, {part.slope[0], part.slope[1], part.slope[2]}, part.bent};
 }
-inline PartLines<PacketFloat> lines_at(const BlocksOf<PacketFloat>& blocks, PacketInt rays, PacketInt path) {
+inline PartLines<PacketFloat> lines_at(const BlocksOf<PacketFloat>& blocks, PacketMask rays, PacketInt path) {
   static constexpr SharePart none{};
   const SharePart* parts[packet_lanes];
   for (const SharePart*& part : parts) part = &none;
-  for (unsigned left = lane_bits(rays); left != 0; left &= left - 1) {
+  for (unsigned left = rays.bits(); left != 0; left &= left - 1) {
     const int lane = __builtin_ctz(left);
     parts[lane] = &part_at(blocks.of(lane), path[lane]);
   }
@@ -92,7 +92,7 @@ struct ShareLine {
   F at{}, slope{};
   F low{}, high{};
 };
-inline void assign(PacketInt mask, ShareLine<PacketFloat>& to, const ShareLine<PacketFloat>& from) {
+inline void assign(PacketMask mask, ShareLine<PacketFloat>& to, const ShareLine<PacketFloat>& from) {
   using Line = ShareLine<PacketFloat>;
   for (PacketFloat Line::*part : {&Line::at, &Line::slope, &Line::low, &Line::high}) assign(mask, to.*part, from.*part);
 }
@@ -154,12 +154,12 @@ template <>
 struct Patches<PacketFloat> {
   PacketFloat column[floats_per_patch];  // what the patches hold, a ray in each lane
 
-  void find(const BlocksOf<PacketFloat>& blocks, PacketInt rays, const PacketInt (&layer)[3]) {
+  void find(const BlocksOf<PacketFloat>& blocks, PacketMask rays, const PacketInt (&layer)[3]) {
     static constexpr SharePatch none{};
     const SharePatch* patch[packet_lanes];
     for (const SharePatch*& p : patch) p = &none;
     const PacketInt path = path_to(layer);
-    for (unsigned left = lane_bits(rays); left != 0; left &= left - 1) {
+    for (unsigned left = rays.bits(); left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left);
       patch[lane] = &patch_at(blocks.of(lane), path[lane]);
     }

@@ -9,7 +9,7 @@ struct RaySums {
   F third;        // at least sum m w tau d^-(m+3) (m M3)
 };
 
-inline void assign(PacketInt mask, RaySums<PacketFloat>& to, const RaySums<PacketFloat>& from) {
+inline void assign(PacketMask mask, RaySums<PacketFloat>& to, const RaySums<PacketFloat>& from) {
   using Sums = RaySums<PacketFloat>;
   for (PacketFloat Sums::*part : {&Sums::f, &Sums::df, &Sums::second, &Sums::third}) assign(mask, to.*part, from.*part);
   for (int i = 0; i < 3; ++i) {

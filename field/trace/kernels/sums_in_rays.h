@@ -20,32 +20,31 @@ class SumsInRays {
     while (in_last_ > 0 && is_unused(last + in_last_ - 1)) --in_last_;
   }
 
-  void find(PacketFloat (&sums)[Count]) const { sum_from(0, 1, sums); }
+  void find(Native (&sums)[Count]) const { sum_from(0, 1, sums); }
 
  private:
   // As SourceGroups leaves lanes: without a field, and too far away to be the nearest.
   static bool is_unused(const float* source) { return source[48] == 0.0F && source[0] == unused_place; }
 
   // Over every stride-th lane of sources from the first one on, as lane_sums() does it.
-  void sum_from(int first, int stride, PacketFloat (&sums)[Count]) const {
+  void sum_from(int first, int stride, Native (&sums)[Count]) const {
     if (stride == lanes) return sum_lane(first, sums);
     sum_from(first, 2 * stride, sums);
     if (groups_ == 1 && first + stride >= in_last_) return;
-    PacketFloat others[Count];
+    Native others[Count];
     sum_from(first + stride, 2 * stride, others);
     for (int i = 0; i < Count - 1; ++i) sums[i] += others[i];
     sums[Count - 1] = larger(sums[Count - 1], others[Count - 1]);
   }
 
-  void sum_lane(int lane, PacketFloat (&sums)[Count]) const {
-    PacketFloat a[Count] = {};
+  void sum_lane(int lane, Native (&sums)[Count]) const {
+    Native a[Count] = {};
     const auto away = [&](const float* source) {
       return Away(at_[0] - source[0], at_[1] - source[16], at_[2] - source[32]);
     };
-    for_each_source(first_ + lane, groups_ - (lane >= in_last_), floats_per_group, away,
-                    [&](const float* source, const Away& d) {
-                      add_(source[48] - PacketFloat{}, source[64] - PacketFloat{}, d, a);
-                    });
+    for_each_source(
+        first_ + lane, groups_ - (lane >= in_last_), floats_per_group, away,
+        [&](const float* source, const Away& d) { add_(source[48] - Native{}, source[64] - Native{}, d, a); });
     __builtin_memcpy(sums, a, sizeof a);
   }
 
@@ -57,7 +56,6 @@ class SumsInRays {
 };
 
 template <int Count, class Add>
-inline void sums_in_rays(const SourceList& list, const PacketFloat (&at)[3], const Add& add,
-                         PacketFloat (&sums)[Count]) {
+inline void sums_in_rays(const SourceList& list, const PacketFloat (&at)[3], const Add& add, Native (&sums)[Count]) {
   SumsInRays<Count, Add>(list, at, add).find(sums);
 }

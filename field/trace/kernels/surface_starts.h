@@ -8,8 +8,8 @@ inline void store_lanes(PacketFloat v, float* to) { __builtin_memcpy(to, &v, siz
 
 // Whether each lane is one of the first `count`.
 inline bool first_of(int count, float) { return count > 0; }
-inline PacketInt first_of(int count, PacketFloat) {
-  return mask_of(count < packet_lanes ? (1U << count) - 1 : all_lane_bits);
+inline PacketMask first_of(int count, PacketFloat) {
+  return PacketMask(count < packet_lanes ? (1U << count) - 1 : all_lane_bits);
 }
 
 // How far to go along the normal until the field is certainly below 1: f and |G| there are bounded by their Taylor
