@@ -8,6 +8,7 @@ namespace {
 // In this order: each builds on those before.
 // clang-format off
 #include "field/trace/kernels/native.h"
+#include "field/trace/kernels/doubles.h"
 #include "field/trace/kernels/sixteen.h"
 #include "field/trace/kernels/lanes.h"
 #include "field/trace/kernels/packet_values.h"

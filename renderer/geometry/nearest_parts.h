@@ -7,25 +7,33 @@
 #include <cstdint>
 #include <limits>
 
+#include "renderer/geometry/box_kernels.h"
+
 namespace marrow {
 
 /// Where a ray comes into a part; by solid and part where two are the same.
 struct PartEntry {
+  static constexpr long long key_of(std::uint32_t solid, std::uint32_t part) {
+    return static_cast<long long>(solid) << 32 | part;
+  }
+
   double enter = -std::numeric_limits<double>::infinity();  ///< along the ray
-  std::uint32_t solid = 0, part = 0;
+  long long key = 0;                                        ///< of the part, among those of all solids
+  std::uint32_t solid() const { return static_cast<std::uint32_t>(key >> 32); }
+  std::uint32_t part() const { return static_cast<std::uint32_t>(key); }
   friend auto operator<=>(const PartEntry&, const PartEntry&) = default;
 };
 
-/// The nearest of the parts it is told of, in whatever order; when they are through, those that follow can be found.
+/// The nearest parts ahead of a ray; when they are through, those that follow can be found.
 class NearestParts {
  public:
-  void add(const PartEntry& entry) {
-    if (entry <= before_) return;
-    std::uint32_t at = full() ? most - 1 : count_;
-    if (full() && entries_[at] < entry) return;
-    for (; at > 0 && entry < entries_[at - 1]; --at) entries_[at] = entries_[at - 1];
-    entries_[at] = entry;
-    if (!full()) ++count_;
+  /// What a search has found.
+  void set(const RaysAmongBoxes& found, std::size_t lane) {
+    count_ = at_ = 0;
+    for (std::size_t i = 0; i < most; ++i) {
+      entries_[i] = {found.enter[i][lane], found.key[i][lane]};
+      count_ += static_cast<std::uint32_t>(entries_[i].key != RaysAmongBoxes::nobody);
+    }
   }
 
   /// There may be others, which begin at `end()` or behind it.
@@ -38,16 +46,16 @@ class NearestParts {
 
   /// To be told of those that follow.
   void go_on() {
-    before_ = entries_[most - 1];
+    taken_ = entries_[most - 1];
     count_ = at_ = 0;
   }
-  double beginning() const { return before_.enter; }  ///< what begins before it has been taken; -infinity at first
+  /// It and what comes before it has been taken; at first nothing has.
+  const PartEntry& taken() const { return taken_; }
 
  private:
-  // A hit is found in the second part that a ray comes into, on average
-  static constexpr std::uint32_t most = 4;
+  static constexpr std::uint32_t most = RaysAmongBoxes::most;
   std::array<PartEntry, most> entries_;
-  PartEntry before_;
+  PartEntry taken_;
   std::uint32_t count_ = 0, at_ = 0;
 };
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "field/base/result.h"
+#include "renderer/geometry/box_kernels.h"
 #include "renderer/geometry/embree_handles.h"
 #include "renderer/geometry/solid.h"
 #include "renderer/geometry/streamed_ray.h"
@@ -36,19 +37,20 @@ class PartHierarchy {
   /// `found`: something is in the way, of another object than `but`; the rest does not count, but `begins_inside`.
   Hit any_hit(const Ray&, ObjectId but = {}) const;
 
-  static constexpr std::size_t most_together = 16;
+  static constexpr std::size_t most_together = RaysAmongBoxes::count;
   /// The nearest parts ahead of each of at most `most_together` rays; sooner when they are neighbours.
   void find_parts(std::span<StreamedRay* const>) const;
   /// Whether any solid traces packets: then it is worth taking rays together.
   bool traces_packets() const { return traces_packets_; }
   std::size_t part_count() const { return first_part_.back(); }
   /// Among all parts, from 0 on.
-  std::uint32_t number_of(const PartEntry& entry) const { return first_part_[entry.solid] + entry.part; }
+  std::uint32_t number_of(const PartEntry& entry) const { return first_part_[entry.solid()] + entry.part(); }
   const PartsOfSolid& solid(std::size_t index) const { return solids_[index]; }
 
  private:
-  explicit PartHierarchy(std::vector<PartsOfSolid>);
+  PartHierarchy(const BoxKernels&, std::vector<PartsOfSolid>);
 
+  const BoxKernels& kernels_;
   std::vector<PartsOfSolid> solids_;
   std::vector<std::uint32_t> first_part_;  // the number of each solid's first part, and that of all
   bool traces_packets_ = false;

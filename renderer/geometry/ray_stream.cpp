@@ -95,7 +95,7 @@ class Stream {
   void seat_all(std::span<const std::uint32_t> waiting) {
     while (!waiting.empty()) {
       RaysInLanes& in_lanes = memory_.in_lanes;
-      if (in_lanes.room() == 0 || next_part(waiting[0]).solid != in_lanes.solid) trace();
+      if (in_lanes.room() == 0 || next_part(waiting[0]).solid() != in_lanes.solid) trace();
       const auto some = waiting.first(std::min(waiting.size(), in_lanes.room()));
       seat(some, in_lanes);
       waiting = waiting.subspan(some.size());
@@ -107,9 +107,9 @@ class Stream {
   // No more than there is room for.
   void seat(std::span<const std::uint32_t> together, RaysInLanes& in_lanes) {
     const PartEntry at = next_part(together[0]);
-    const PartsOfSolid& of = hierarchy_.solid(at.solid);
-    in_lanes.solid = at.solid;
-    in_lanes.parts.push_back({&of.parts[at.part], LaneSet::range(in_lanes.count, together.size())});
+    const PartsOfSolid& of = hierarchy_.solid(at.solid());
+    in_lanes.solid = at.solid();
+    in_lanes.parts.push_back({&of.parts[at.part()], LaneSet::range(in_lanes.count, together.size())});
     for (const std::uint32_t i : together) {
       StreamedRay& ray = memory_.rays[i];
       in_lanes.rays[in_lanes.count] = &ray;
@@ -134,9 +134,9 @@ class Stream {
   }
 
   void take(StreamedRay& ray, PartEntry at, double t, const ElementLog& log) {
-    const PartsOfSolid& of = hierarchy_.solid(at.solid);
+    const PartsOfSolid& of = hierarchy_.solid(at.solid());
     ray.ahead.take();
-    ray.take(at.solid, *of.solid, of.parts[at.part], t, log, any_);
+    ray.take(at.solid(), *of.solid, of.parts[at.part()], t, log, any_);
     advance(ray);
   }
 
