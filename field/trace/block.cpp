@@ -65,9 +65,7 @@ Allocate in(Memory& memory) {
 }  // namespace
 
 Block::Block(const Context& context, const CellTree::Cell& cell)
-    : context_(context),
-      serial_(next_serial()),
-      cell_(cell),
+    : cell_(cell),
       view_{.find_surface = [](const void* owner,
                                int octant) { return static_cast<const Block*>(owner)->surface(octant); },
             .find_known_surface =
@@ -85,7 +83,9 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
             .iso = context.iso.view(),
             .rows = context.iso.views().data(),
             .row_count = static_cast<int>(context.iso.views().size()),
-            .tables = context.iso.tables()} {
+            .tables = context.iso.tables()},
+      context_(context),
+      serial_(next_serial()) {
   if (context.strands != nullptr) {
     patches_ = std::make_unique<const SharePatches>();
     view_.parts = patches_->octants();

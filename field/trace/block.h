@@ -8,6 +8,7 @@
 #include <span>
 
 #include "field/math/box3.h"
+#include "field/trace/ask_for.h"
 #include "field/trace/block_arena.h"
 #include "field/trace/block_kernels.h"
 #include "field/trace/block_level.h"
@@ -25,7 +26,7 @@ class Strands;
 
 /// Coordinates of the block: x = (p - center) / half. Its levels are made when the first ray needs them; safe to use
 /// from many threads.
-class Block {
+class alignas(64) Block {
  public:
   struct Context {
     std::span<const Piece> pieces;  ///< in the order of the source tree
@@ -48,6 +49,8 @@ class Block {
   Block& operator=(const Block&) = delete;
 
   const BlockView& view() const { return view_; }
+  /// Asks memory for what rays need of it first.
+  void ask_for() const { ask_for_lines<3>(this); }
   /// No octant can hold surface.
   bool empty() const { return octants_ == 0; }
   /// Around all slots that may hold surface, as far as they are known by now; a little larger, for what rounding does
@@ -67,10 +70,6 @@ class Block {
   ShareAt share(const Vec3d& place) const;
 
  private:
-  const Context& context_;
-  std::uint64_t serial_;
-  CellTree::Cell cell_;
-  BlockView view_;
   // One of the two levels.
   struct Stored {
     Lazy<BlockLevel> whole;
@@ -83,14 +82,20 @@ class Block {
   template <class Make>
   BlockLevel made_again(const Stored&, const Make&, LevelBuffer&) const;
   void keep_recipe(const Stored&, const BlockLevel&, std::span<const PieceRule>) const;
-  Stored coarse_, fine_;
   std::uint64_t surface(int octant) const;
   unsigned known_surface(std::uint64_t (&octants)[8]) const;
   const SharePart& part(int path) const;
-  std::unique_ptr<const SharePatches> patches_;
-  unsigned octants_ = 0;  // a bit for each that may hold surface
-  mutable std::array<std::atomic<std::uint64_t>, 8> surface_{};
+
+  // What each ray needs comes first, in three cache lines; of the view that is what makes the levels.
+  CellTree::Cell cell_;
+  unsigned octants_ = 0;                                 // a bit for each that may hold surface
   mutable std::atomic<std::uint8_t> surface_known_ = 0;  // a bit for each octant
+  Stored coarse_, fine_;
+  mutable std::array<std::atomic<std::uint64_t>, 8> surface_{};
+  BlockView view_;
+  const Context& context_;
+  std::uint64_t serial_;
+  std::unique_ptr<const SharePatches> patches_;
 };
 
 }  // namespace marrow

@@ -91,8 +91,8 @@ const Tile& CellTree::child(const Tile& tile, int slot) const {
     return divide({.center = slot_center(p.center, p.half, slot),
                    .half = p.half / 4,
                    .level = p.level + 2,
-                   .parent = &tile,
-                   .slot = slot});
+                   .slot = slot,
+                   .parent = &tile});
   });
 }
 

@@ -24,9 +24,9 @@ std::uint64_t TileContent::occupied() const {
 Tile::Tile(const TilePlace& place, Surroundings coarse, const TileContent& content)
     : place_(place),
       content_(content),
+      blocks_(new Lazy<Block>[static_cast<std::size_t>(std::popcount(content.cells))]),
       occupied_(content.occupied()),
       coarse_(std::move(coarse)),
-      blocks_(new Lazy<Block>[static_cast<std::size_t>(std::popcount(content.cells))]),
       children_(new Lazy<Tile>[static_cast<std::size_t>(std::popcount(content.tiles))]) {
   for (std::uint64_t left = content.occupied(); left != 0; left &= left - 1) {
     const Vec3d h = Vec3d{1, 1, 1} * (place.half / 4);

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "field/math/box3.h"
+#include "field/trace/ask_for.h"
 #include "field/trace/divider.h"
 #include "field/trace/lazy.h"
 
@@ -21,8 +22,8 @@ struct TilePlace {
   Vec3d center;
   double half = 0;
   int level = 0;                       ///< halvings since the root
-  const class Tile* parent = nullptr;  ///< null: a tile of the first level
   int slot = 0;                        ///< in the parent
+  const class Tile* parent = nullptr;  ///< null: a tile of the first level
 
   Box3 box() const {
     const Vec3d h{half, half, half};
@@ -44,7 +45,7 @@ struct TileContent {
 };
 
 /// Blocks of cells and smaller tiles are made when asked for.
-class Tile {
+class alignas(64) Tile {
  public:
   /// `coarse`: the sources around it, as the divider sees them.
   Tile(const TilePlace&, Surroundings coarse, const TileContent&);
@@ -65,6 +66,8 @@ class Tile {
   const Lazy<StrandView>& strands() const { return strands_; }
   /// Of a slot that has one.
   const Lazy<Block>& block(int slot) const { return blocks_[rank(content_.cells, slot)]; }
+  /// Asks memory for what rays need on their way to a cell.
+  void ask_for() const { ask_for_lines<2>(this); }
   const Lazy<Tile>& child(int slot) const { return children_[rank(content_.tiles, slot)]; }
   /// Of this tile itself, without its blocks and smaller tiles.
   std::size_t bytes() const;
@@ -74,15 +77,16 @@ class Tile {
     return static_cast<std::size_t>(std::popcount(mask & ((std::uint64_t{1} << slot) - 1)));
   }
 
+  // What rays need on their way to a cell comes first.
   TilePlace place_;
   TileContent content_;
-  mutable std::atomic<std::uint64_t> occupied_;
   Box3 content_box_;
+  std::unique_ptr<Lazy<Block>[]> blocks_;
+  mutable std::atomic<std::uint64_t> occupied_;
   Surroundings coarse_;
   Lazy<Surroundings> fine_;
   std::array<Lazy<Surroundings>, 8> octants_;
   Lazy<StrandView> strands_;
-  std::unique_ptr<Lazy<Block>[]> blocks_;
   std::unique_ptr<Lazy<Tile>[]> children_;
 };
 

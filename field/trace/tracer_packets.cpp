@@ -68,6 +68,24 @@ CellPlace place_of(const TracePart& part) {
   return place;
 }
 
+// What rays need of a cell lies here and there, each thing where the one before tells: if each cell were asked for by
+// itself, its rays would wait for one after the other.
+void ask_for_cells(std::span<const PartRays> parts) {
+  const auto for_each_cell = [&](const auto& ask) {
+    for (const auto& [part, rays] : parts)
+      if (part.within != nullptr) ask(*part.within, part.slot);
+  };
+  const auto ask_for_block = [](const Tile& tile, int slot) {
+    if (!tile.content().is_cell(slot)) return;
+    if (const Block* made = tile.block(slot).peek()) made->ask_for();
+  };
+  for_each_cell([](const Tile& tile, int) { tile.ask_for(); });
+  for_each_cell([](const Tile& tile, int slot) {
+    if (tile.content().is_cell(slot)) ask_for_lines<1>(&tile.block(slot));
+  });
+  for_each_cell(ask_for_block);
+}
+
 void add_to(CellLog& log, const CellRoots& roots, std::size_t lane) {
   log.add({roots.searched_from[lane], static_cast<std::uint32_t>(roots.evaluations[lane])});
   if (roots.begins_outside.has(lane)) log.side = CellLog::Side::Outside;
@@ -129,6 +147,7 @@ const Block* BlendTracer::block_for_packets(const TracePart& part) const {
 void BlendTracer::first_hits(std::span<const PartRays> parts, const RayPacket& packet, bool any, CellHits& out) const {
   for (const auto& [part, rays] : parts)
     if (part.within == nullptr) first_hits(part.tile, packet, rays, any, out);
+  ask_for_cells(parts);
   CellGroup group(*this, packet, any);
   const auto alone = [&](const TracePart& part, std::size_t i) {
     out.hit[i] = first_hit(part, packet.ray(i), any, out.log[i]).value_or(CellHit{});
