@@ -35,6 +35,7 @@ namespace {
 #include "field/trace/kernels/first_root.h"
 #include "field/trace/kernels/packet_lanes.h"
 #include "field/trace/kernels/packet_levels.h"
+#include "field/trace/kernels/packet_ahead.h"
 #include "field/trace/kernels/packet_runs.h"
 #include "field/trace/kernels/block_search.h"
 #include "field/trace/kernels/packet.h"

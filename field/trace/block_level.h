@@ -6,7 +6,7 @@
 namespace marrow {
 
 /// With certified bounds of its difference from the exact field, over its cell.
-struct BlockLevel {
+struct alignas(64) BlockLevel {
   FieldLevel level;
   double f_error = 0, gradient_error = 0;
   double angle_error = 0;  ///< of level.angle

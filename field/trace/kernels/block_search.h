@@ -190,9 +190,11 @@ class BlockSearch {
     Search<Rule, PacketFloat> search(march, PacketFloat{}, PacketFloat{});
     Approach<Rule, PacketFloat> approach(search, any_root_);
     Lanes at;
+    RaysAhead ahead(waiting, [&](int ray) { return &level_of(ray); });
     for (;;) {
       if (!waiting.empty()) {
         const PacketMask seated = seat(at, waiting, rays, level);
+        ahead.ask(__builtin_popcount(seated.bits()));
         angle.load_run(at, seated, r);
         const PacketFloat begin = at.load(r.begin), end = at.load(r.end);
         search.restart(seated, begin, end);
@@ -228,9 +230,11 @@ class BlockSearch {
     Search<Rule, PacketFloat> search(march, PacketFloat{}, PacketFloat{});
     Decision<Rule, PacketFloat> decision(search, PacketFloat{}, any_root_);
     Lanes at;
+    RaysAhead ahead(waiting, [&](int ray) { return &level_of(ray); });
     for (;;) {
       if (!waiting.empty()) {
         const PacketMask seated = seat(at, waiting, rays, level);
+        ahead.ask(__builtin_popcount(seated.bits()));
         angle.load_share(at, seated, r);
         const PacketFloat front = at.load(r.front), end = at.load(Rule == Angle::Patched ? r.fine_end : r.end);
         search.restart(seated, front, end);

@@ -14,6 +14,7 @@ class PacketLevels {
       made.add(cell);
       good.add(cell);
       of_[cell] = &(cells[cell].block->*Make)();
+      __builtin_prefetch(of_[cell]);  // rays that come to lanes read it
       const int before = own(cell);
       if (before != nobody) good.remove(before);
     });
