@@ -1,6 +1,6 @@
 // Rays among boxes, as many at a time as a register has doubles. Part of box_kernels_<set>.cpp.
 //
-// Operation by operation what rays_in_boxes.h and part_hierarchy.cpp do for one ray.
+// Operation by operation what ray_in_boxes.h and part_hierarchy.cpp do for one ray.
 
 using Keys = DoubleMask;
 using Ints = int __attribute__((vector_size(4 * double_lanes)));
