@@ -28,6 +28,7 @@ class BlockSearch {
       __builtin_memcpy(r.evaluations + first, &none, sizeof none);
     });
     const LaneSet asked = open;
+    go_apart_ = asked.count() < few_in_a_cell * cell_count_;
     open &=
         ~in_levels<&BlockView::fine>(open & r.from_surface, [&](const LaneSet& rays) { return leave_surfaces(rays); });
     start_runs(open);
@@ -51,6 +52,7 @@ class BlockSearch {
 
  private:
   static constexpr int groups = packet_size / packet_lanes;
+  static constexpr int few_in_a_cell = 4;  // where there are more, what rays need has just been used by others
 
   // Of as many rays as there are lanes; made in place.
   struct RunsOfGroup : Runs<Rule, PacketFloat> {
@@ -190,7 +192,7 @@ class BlockSearch {
     Search<Rule, PacketFloat> search(march, PacketFloat{}, PacketFloat{});
     Approach<Rule, PacketFloat> approach(search, any_root_);
     Lanes at;
-    RaysAhead ahead(waiting, [&](int ray) { return &level_of(ray); });
+    RaysAhead ahead(go_apart_ ? waiting : LaneSet{}, [&](int ray) { return &level_of(ray); });
     for (;;) {
       if (!waiting.empty()) {
         const PacketMask seated = seat(at, waiting, rays, level);
@@ -230,7 +232,7 @@ class BlockSearch {
     Search<Rule, PacketFloat> search(march, PacketFloat{}, PacketFloat{});
     Decision<Rule, PacketFloat> decision(search, PacketFloat{}, any_root_);
     Lanes at;
-    RaysAhead ahead(waiting, [&](int ray) { return &level_of(ray); });
+    RaysAhead ahead(go_apart_ ? waiting : LaneSet{}, [&](int ray) { return &level_of(ray); });
     for (;;) {
       if (!waiting.empty()) {
         const PacketMask seated = seat(at, waiting, rays, level);
@@ -278,4 +280,5 @@ class BlockSearch {
   BlockRays* rays_;
   Own* own_;
   LaneSet surely_inside_;
+  bool go_apart_ = false;  // few rays share a cell: memory has to be asked ahead
 };
