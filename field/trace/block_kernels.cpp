@@ -1,5 +1,7 @@
 #include "field/trace/block_kernels.h"
 
+#include "field/math/instruction_sets.h"
+
 namespace marrow {
 namespace sse4 {
 const BlockKernels& table();
@@ -12,11 +14,8 @@ const BlockKernels& table();
 }
 
 const BlockKernels* block_kernels(std::string_view name) {
-  const bool has_avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                          __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
-  const bool has_avx2 = __builtin_cpu_supports("avx2");
-  if (has_avx512 && (name.empty() || name == "avx512")) return &avx512::table();
-  if (has_avx2 && (name.empty() || name == "avx2")) return &avx2::table();
+  if (has_avx512() && (name.empty() || name == "avx512")) return &avx512::table();
+  if (has_avx2() && (name.empty() || name == "avx2")) return &avx2::table();
   if (name.empty() || name == "sse4") return &sse4::table();
   return nullptr;
 }

@@ -1,5 +1,7 @@
 #include "renderer/geometry/box_kernels.h"
 
+#include "field/math/instruction_sets.h"
+
 namespace marrow {
 namespace sse4 {
 const BoxKernels& box_table();
@@ -12,10 +14,8 @@ const BoxKernels& box_table();
 }
 
 const BoxKernels& box_kernels(int lanes) {
-  const bool has_avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                          __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
-  if (lanes == 16 && has_avx512) return avx512::box_table();
-  if (lanes >= 8 && __builtin_cpu_supports("avx2")) return avx2::box_table();
+  if (lanes == 16 && has_avx512()) return avx512::box_table();
+  if (lanes >= 8 && has_avx2()) return avx2::box_table();
   return sse4::box_table();
 }
 
