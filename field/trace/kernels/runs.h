@@ -138,8 +138,6 @@ struct Run {
   ShareLine<F> share{};  // of the range of angles, where patches give it
 };
 
-struct NoPatches {};
-
 // From slot to slot along the ray [Amanatides and Woo 1987]; neighbours are joined. Bounds of slots hold a little
 // beyond them, by far more than planes and places are rounded.
 template <Angle Rule, class F>
@@ -161,9 +159,6 @@ class Runs {
       const IntOf<F> layer[3] = {layers[0].index, layers[1].index, layers[2].index};
       const Mask crossed = open & (leave > t_), surface = crossed & slots_.at(slot_address(layer), crossed);
       const Mask first = surface & !found;
-      if constexpr (Rule == Angle::Patched) {
-        if (any(surface)) add_shares(ray, surface, first, layer, leave, run);
-      }
       assign(first, run.begin, t_);
       assign(surface, run.end, leave);
       const Mask closed = found & crossed & !surface;
@@ -175,20 +170,14 @@ class Runs {
       open = open & !closed & !last;
     }
     for (int k = 0; k < 3; ++k) layers_[k] = layers[k];
+    if constexpr (Rule == Angle::Patched) assign(found, run.share, line_on(blocks_, ray, found, run.begin, run.end));
     return found;
   }
 
  private:
-  void add_shares(const RayOf<F>& ray, Mask surface, Mask first, const IntOf<F> (&layer)[3], F leave, Run<F>& run) {
-    patches_.find(blocks_, ray, surface, layer);
-    assign(first, run.share, patches_.line());
-    patches_.widen(surface, t_, leave, run.share);
-  }
-
   BlocksOf<F> blocks_;
   SlotBits<F> slots_;
   Layer<F> layers_[3];
   F t_, end_;
   Mask ended_;
-  [[no_unique_address]] std::conditional_t<Rule == Angle::Patched, PatchLines<F>, NoPatches> patches_;
 };

@@ -35,6 +35,13 @@ inline OnWay<Degree, F> operator+(OnWay<Degree, F> p, const OnWay<Degree, F>& q)
   return p;
 }
 
+// The layer of a coordinate.
+template <class F>
+inline IntOf<F> layer_of(F x) {
+  constexpr float last = 7.5F;
+  return whole_part(max_of(0.0F, min_of(x * 4 + 4, last)));
+}
+
 // The path to a slot: from the largest cube to the smallest the octants that hold it, x the lowest bit of each.
 template <class Int>
 inline Int path_to(const Int (&layer)[3]) {
@@ -86,53 +93,68 @@ inline PartLines<PacketFloat> lines_at(const BlocksOf<PacketFloat>& blocks, Pack
   return {low[2], low[3], {high[0], high[1], high[2]}, high[3]};
 }
 
+template <class F>
+struct LineOfPart;
+
 // The share on a stretch of a ray: on a line in t, but for what lies between two numbers.
 template <class F>
 struct ShareLine {
   F at{}, slope{};
   F low{}, high{};
+
+  // Holds that of a part from `begin` to `end`, too.
+  void widen(MaskOf<F> rays, const LineOfPart<F>& part, F begin, F end) {
+    const F beside = part.at - at, turned = part.slope - slope, a = beside + turned * begin, b = beside + turned * end;
+    assign(rays, low, min_of(low, min_of(a, b) - part.bent));
+    assign(rays, high, max_of(high, max_of(a, b) + part.bent));
+  }
 };
 inline void assign(PacketMask mask, ShareLine<PacketFloat>& to, const ShareLine<PacketFloat>& from) {
   using Line = ShareLine<PacketFloat>;
   for (PacketFloat Line::*part : {&Line::at, &Line::slope, &Line::low, &Line::high}) assign(mask, to.*part, from.*part);
 }
 
-// Those of the parts that rays came to last.
+// The part in which a ray is at t, until it leaves that.
 template <class F>
-class PatchLines {
- public:
-  void find(const BlocksOf<F>& blocks, const RayOf<F>& ray, MaskOf<F> rays, const IntOf<F> (&layer)[3]) {
-    const IntOf<F> path = path_to(layer);
-    const MaskOf<F> came = rays & !((path & of_path_) == path_);
-    if (!any(came)) return;
-    const PartLines<F> part = lines_at(blocks, came, path);
-    const IntOf<F> layers = whole_part(part.half * 8.0F), of_path = -(layers * layers * layers);
-    F at = part.level, slope{};
+struct LineOfPart {
+  F at, slope, bent, exit = all_lanes<F>(infinity);
+
+  LineOfPart(const BlocksOf<F>& blocks, const RayOf<F>& ray, F t, MaskOf<F> rays) {
+    IntOf<F> layer[3];
+    for (int k = 0; k < 3; ++k) layer[k] = layer_of(ray.origin[k] + ray.direction[k] * t);
+    const PartLines<F> part = lines_at(blocks, rays, path_to(layer));
+    const IntOf<F> layers = whole_part(part.half * 8.0F);
+    at = part.level;
+    slope = F{};
+    bent = part.bent;
     for (int k = 0; k < 3; ++k) {
-      const F center = (to_float(layer[k] & -layers) * 0.25F + part.half) - 1.0F;
+      const F center = (to_float(layer[k] & -layers) * 0.25F + part.half) - 1.0F, d = nonzero(ray.direction[k]);
       at += part.slope[k] * (ray.origin[k] - center);
       slope += part.slope[k] * ray.direction[k];
+      const F face = center + select(d > 0.0F, part.half, -part.half), leave = (face - ray.origin[k]) / d;
+      exit = min_of(exit, select(abs_of(face) < 0.999F, leave, all_lanes<F>(infinity)));  // outer parts go on
     }
-    assign(came, of_path_, of_path);
-    assign(came, path_, path & of_path);
-    assign(came, at_, at);
-    assign(came, slope_, slope);
-    assign(came, bent_, part.bent);
   }
-
-  ShareLine<F> line() const { return {at_, slope_, -bent_, bent_}; }
-  // Holds what is here from `begin` to `end`, too.
-  void widen(MaskOf<F> rays, F begin, F end, ShareLine<F>& line) const {
-    const F at = at_ - line.at, slope = slope_ - line.slope, a = at + slope * begin, b = at + slope * end;
-    assign(rays, line.low, min_of(line.low, min_of(a, b) - bent_));
-    assign(rays, line.high, max_of(line.high, max_of(a, b) + bent_));
-  }
-
- private:
-  // To the part: the bits that paths to its slots share, all but three for each halving within it, and which they are.
-  IntOf<F> path_ = IntOf<F>{} - 1, of_path_{};
-  F at_{}, slope_{}, bent_{};
 };
+
+// From part to part on a run; what is clipped off a corner goes with its neighbours, which differ by less than a share
+// does over that. A ray that does not leave a part where it should, along a face, is looked for a little later.
+template <class F>
+inline ShareLine<F> line_on(const BlocksOf<F>& blocks, const RayOf<F>& ray, MaskOf<F> rays, F begin, F end) {
+  constexpr float corner = 1e-5F, little = 1.0F / 32;
+  ShareLine<F> line;
+  MaskOf<F> first = rays;
+  F t = begin;
+  for (MaskOf<F> open = rays; any(open); first = MaskOf<F>{}) {
+    const LineOfPart<F> part(blocks, ray, t + corner, open);
+    assign(first, line, {part.at, part.slope, -part.bent, part.bent});
+    const F left = select(part.exit > t, part.exit, t + little);
+    line.widen(open & !first, part, t, min_of(left, end));
+    t = left;
+    open = open & (t + corner < end);
+  }
+  return line;
+}
 
 // The parts in which rays are.
 template <class F>
@@ -214,13 +236,6 @@ struct ShareOnRun {
     return p;
   }
 };
-
-// The layer of a coordinate.
-template <class F>
-inline IntOf<F> layer_of(F x) {
-  constexpr float last = 7.5F;
-  return whole_part(max_of(0.0F, min_of(x * 4 + 4, last)));
-}
 
 // Of the part of the block in which a ray is at t, until it leaves that by more than places are rounded.
 template <class F>
