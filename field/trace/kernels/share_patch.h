@@ -93,8 +93,42 @@ inline PartLines<PacketFloat> lines_at(const BlocksOf<PacketFloat>& blocks, Pack
   return {low[2], low[3], {high[0], high[1], high[2]}, high[3]};
 }
 
+// Where a ray leaves a part of the block by more than places are rounded.
 template <class F>
-struct LineOfPart;
+inline F leave_part(const RayOf<F>& ray, const F (&center)[3], F half) {
+  constexpr float clearly = 1e-6F, outermost = 1 - clearly;
+  F end = all_lanes<F>(infinity);
+  for (int k = 0; k < 3; ++k) {
+    const F d = nonzero(ray.direction[k]), face = center[k] + select(d > 0.0F, half, -half);
+    // The outer ones go on beyond the block.
+    const F leave = (face + select(d > 0.0F, all_lanes<F>(clearly), all_lanes<F>(-clearly)) - ray.origin[k]) / d;
+    end = min_of(end, select(abs_of(face) < outermost, leave, all_lanes<F>(infinity)));
+  }
+  return end;
+}
+
+// The part in which a ray is at t, until it leaves that.
+template <class F>
+struct LineOfPart {
+  F at, slope, bent, exit;
+
+  LineOfPart(const BlocksOf<F>& blocks, const RayOf<F>& ray, F t, MaskOf<F> rays) {
+    IntOf<F> layer[3];
+    for (int k = 0; k < 3; ++k) layer[k] = layer_of(ray.origin[k] + ray.direction[k] * t);
+    const PartLines<F> part = lines_at(blocks, rays, path_to(layer));
+    const IntOf<F> layers = whole_part(part.half * 8.0F);
+    at = part.level;
+    slope = F{};
+    bent = part.bent;
+    F center[3];
+    for (int k = 0; k < 3; ++k) {
+      center[k] = (to_float(layer[k] & -layers) * 0.25F + part.half) - 1.0F;
+      at += part.slope[k] * (ray.origin[k] - center[k]);
+      slope += part.slope[k] * ray.direction[k];
+    }
+    exit = leave_part(ray, center, part.half);
+  }
+};
 
 // The share on a stretch of a ray: on a line in t, but for what lies between two numbers.
 template <class F>
@@ -113,29 +147,6 @@ inline void assign(PacketMask mask, ShareLine<PacketFloat>& to, const ShareLine<
   using Line = ShareLine<PacketFloat>;
   for (PacketFloat Line::*part : {&Line::at, &Line::slope, &Line::low, &Line::high}) assign(mask, to.*part, from.*part);
 }
-
-// The part in which a ray is at t, until it leaves that.
-template <class F>
-struct LineOfPart {
-  F at, slope, bent, exit = all_lanes<F>(infinity);
-
-  LineOfPart(const BlocksOf<F>& blocks, const RayOf<F>& ray, F t, MaskOf<F> rays) {
-    IntOf<F> layer[3];
-    for (int k = 0; k < 3; ++k) layer[k] = layer_of(ray.origin[k] + ray.direction[k] * t);
-    const PartLines<F> part = lines_at(blocks, rays, path_to(layer));
-    const IntOf<F> layers = whole_part(part.half * 8.0F);
-    at = part.level;
-    slope = F{};
-    bent = part.bent;
-    for (int k = 0; k < 3; ++k) {
-      const F center = (to_float(layer[k] & -layers) * 0.25F + part.half) - 1.0F, d = nonzero(ray.direction[k]);
-      at += part.slope[k] * (ray.origin[k] - center);
-      slope += part.slope[k] * ray.direction[k];
-      const F face = center + select(d > 0.0F, part.half, -part.half), leave = (face - ray.origin[k]) / d;
-      exit = min_of(exit, select(abs_of(face) < 0.999F, leave, all_lanes<F>(infinity)));  // outer parts go on
-    }
-  }
-};
 
 // From part to part on a run; what is clipped off a corner goes with its neighbours, which differ by less than a share
 // does over that. A ray that does not leave a part where it should, along a face, is looked for a little later.
@@ -241,23 +252,17 @@ struct ShareOnRun {
 template <class F>
 struct ShareInPatch {
   ShareOnRun<F> share;
-  F end = all_lanes<F>(infinity);
+  F end;
 
   ShareInPatch(const BlocksOf<F>& blocks, const RayOf<F>& ray, F t, MaskOf<F> rays) {
-    constexpr float clearly = 1e-6F, outermost = 1 - clearly;
     Patches<F> patches;
     const IntOf<F> layer[3] = {layer_of(ray.origin[0] + ray.direction[0] * t),
                                layer_of(ray.origin[1] + ray.direction[1] * t),
                                layer_of(ray.origin[2] + ray.direction[2] * t)};
     patches.find(blocks, rays, layer);
     share = ShareOnRun<F>(patches, ray, t);
-    const F half = 1 / patches.inverse_half();
-    for (int k = 0; k < 3; ++k) {
-      const F d = nonzero(ray.direction[k]), face = patches.center(k) + select(d > 0.0F, half, -half);
-      // The outer ones go on beyond the block.
-      const F leave = (face + select(d > 0.0F, all_lanes<F>(clearly), all_lanes<F>(-clearly)) - ray.origin[k]) / d;
-      end = min_of(end, select(abs_of(face) < outermost, leave, all_lanes<F>(infinity)));
-    }
+    const F center[3] = {patches.center(0), patches.center(1), patches.center(2)};
+    end = leave_part(ray, center, 1 / patches.inverse_half());
     end = select(end > t, end, all_lanes<F>(infinity));
   }
 };
