@@ -162,9 +162,9 @@ void judge_way_inside(const StressScene& scene, const Ray& ray, double end, bool
 }
 
 // How deep the surface is that a ray found at t: of a line that only one way met, whether it is more than a touch.
-double depth_after(const StressScene& scene, const Ray& ray, double t) {
+double depth_after(const StressScene& scene, const Ray& ray, double t, double end) {
   const double radius = scene.oracle().skeleton_distance(ray.at(t));
-  return scene.oracle().largest_excess(ray, std::max(0.0, t - 1e-3 * radius), t + radius);
+  return scene.oracle().largest_excess(ray, std::max(0.0, t - 1e-3 * radius), std::min(t + radius, end));
 }
 
 Ray reversed(const Ray& ray, double length) { return {ray.at(length), -ray.direction, 0, length}; }
@@ -268,13 +268,14 @@ void count_crossings(const StressScene& scene, const Ray& line, Random& random, 
   RayRecord going, coming;
   const auto entry = scene.surfaces().first_hit(there, going), exit = scene.surfaces().first_hit(back, coming);
   ++p.lines;
-  // `ray` met surface at t; the record is that of the ray that met nothing the other way.
-  const auto one_way_only = [&](const Ray& ray, double t, const RayRecord& empty_handed) {
+  // `ray` met surface at t; the record is that of the ray that met nothing the other way, from `end` on: a mere touch at
+  // t is no crossing because of what lies behind `end`.
+  const auto one_way_only = [&](const Ray& ray, double t, double end, const RayRecord& empty_handed) {
     if (is_bare_point(scene, ray, t)) {
       ++p.points;
       return;
     }
-    const double depth = depth_after(scene, ray, t);
+    const double depth = depth_after(scene, ray, t, end);
     if (depth < scene.grazing_excess()) {
       ++p.odd_grazing;
       return;
@@ -285,16 +286,16 @@ void count_crossings(const StressScene& scene, const Ray& line, Random& random, 
   };
   if (!entry && !exit) return;
   ++p.crossed;
-  if (!exit) return one_way_only(there, entry->t, coming);
-  if (!entry) return one_way_only(back, exit->t, going);
+  if (!exit) return one_way_only(there, entry->t, reach, coming);
+  if (!entry) return one_way_only(back, exit->t, reach, going);
   const double first = entry->t, last = reach - exit->t;
   for (int i = 0; i < 3; ++i) {
     const double t = random.between(first, last);
     if (!(scene.oracle().value(line.at(t)) < 1 - scene.grazing_excess())) continue;
     ++p.restarts;
     const Ray onward{line.at(t), line.direction, 0, reach - t}, backward{line.at(t), -line.direction, 0, t};
-    if (!scene.surfaces().first_hit(onward, going)) one_way_only(back, exit->t, going);
-    if (!scene.surfaces().first_hit(backward, coming)) one_way_only(there, entry->t, coming);
+    if (!scene.surfaces().first_hit(onward, going)) one_way_only(back, exit->t, reach - t, going);
+    if (!scene.surfaces().first_hit(backward, coming)) one_way_only(there, entry->t, t, coming);
   }
 }
 
