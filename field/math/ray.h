@@ -14,8 +14,9 @@ struct Ray {
   UnitVec3 direction;
   double t_min = 0;
   double t_max = std::numeric_limits<double>::infinity();
-  /// Where the ray leaves a surface: what is known of the field there; null: nothing. It must outlive the ray. With it
-  /// the ray gets away sooner; it meets the same surfaces, to within what they are resolved to.
+  /// Where the ray leaves a surface, outside: what is known of the field there; null: nothing. It must outlive the ray,
+  /// and be of the surfaces that the ray is traced in. With it the ray gets away sooner; it meets the same surfaces, to
+  /// within what they are resolved to.
   const FieldAround* around = nullptr;
 
   Vec3d at(double t) const { return origin + direction * t; }

@@ -6,6 +6,7 @@
 
 #include "field/trace/blend_tracer_state.h"
 #include "field/trace/cell_walk.h"
+#include "field/trace/outside_bound.h"
 #include "field/trace/ray_in_cube.h"
 
 namespace marrow {
@@ -104,6 +105,20 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
   const double t = std::max(cube.to_world(root.t), ray.t_min);
   const bool ends = any && !query.leaving && t > ray.t_max - nearly_ended * b.half();
   return CellHit{ends ? ray.t_max : t, &b};
+}
+
+bool BlendTracer::is_clearly_outside(const Vec3d& p) const {
+  return !state_->bounds.contains(p) || OutsideBound(state_->sources, state_->coarse, state_->iso).holds(p);
+}
+
+bool BlendTracer::leaves_surface(const Ray& ray) const {
+  if (ray.around == nullptr || ray.around->block == nullptr) return false;
+  const Block& b = *static_cast<const Block*>(ray.around->block);
+  if (&b.context() != &state_->context) return false;
+  // As near as departures (kernels/departure.h) want it.
+  const Vec3d begin = (ray.at(ray.t_min) - b.center()) / b.half();
+  const float* place = ray.around->place;
+  return length(begin - Vec3d{place[0], place[1], place[2]}) < 0.01 * ray.around->field.nearest;
 }
 
 TraceStatistics BlendTracer::statistics() const {

@@ -147,6 +147,11 @@ class BlendTracer {
   void surfaces_at(std::span<const SurfaceQuery> hits, std::span<SurfacePoint> found) const;
 
   const BlendField& field() const;
+  /// Whether the corrected field is clearly below 1 (OutsideBound); never wrongly true. For large blends much sooner
+  /// than the field.
+  bool is_clearly_outside(const Vec3d& p) const;
+  /// Whether a ray begins beside a hit of this tracer, outside, as what it knows of the field around tells.
+  bool leaves_surface(const Ray&) const;
   TraceStatistics statistics() const;
 
  private:

@@ -56,6 +56,7 @@ class alignas(64) Block {
   /// Around all slots that may hold surface, as far as they are known by now; a little larger, for what rounding does
   /// to rays. Empty when there are none.
   Box3 surface_box() const;
+  const Context& context() const { return context_; }
   const Vec3d& center() const { return cell_.center; }
   double half() const { return cell_.half; }
 

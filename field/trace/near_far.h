@@ -37,6 +37,7 @@ class NearFar {
  public:
   /// `far_degree`: of the polynomials, low_far_degree, high_far_degree or highest_far_degree.
   NearFar(int degree, ErrorBudget, const BlockKernels&, int far_degree);
+  int degree() const { return degree_; }
   int far_degree() const { return far_degree_; }
   const ErrorBudget& budget() const { return budget_; }
 

@@ -70,6 +70,14 @@ double FieldSolid::value(const Vec3d& p) const {
   return corrected_value(tracer_->field(), in_world_ ? p : local_from_world_.point(p));
 }
 
+bool FieldSolid::is_clearly_outside(const Vec3d& p) const {
+  return tracer_->is_clearly_outside(in_world_ ? p : local_from_world_.point(p));
+}
+
+bool FieldSolid::is_left_by(const Ray& ray) const {
+  return ray.around != nullptr && tracer_->leaves_surface(to_local(ray).ray);
+}
+
 Box3 FieldSolid::to_world(const Box3& local) const {
   if (in_world_) return local;
   Box3 box;

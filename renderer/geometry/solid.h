@@ -73,6 +73,10 @@ class Solid {
   virtual FieldSample sample(const Vec3d&) const { return {}; }
   /// sample().value up to rounding, at a part of the cost.
   virtual double value(const Vec3d&) const { return 0; }
+  /// Whether value() is known to be below 0.999, where that is sooner told than the value.
+  virtual bool is_clearly_outside(const Vec3d&) const { return false; }
+  /// Whether a ray leaves the surface of the solid, and so begins outside it.
+  virtual bool is_left_by(const Ray&) const { return false; }
   /// t of the first hit in an element, in [ray.t_min, ray.t_max] but not depending on t_max; any hit with `any`.
   virtual std::optional<double> hit(std::size_t element, const Ray&, bool any, ElementLog&) const = 0;
   /// The elements, or what they are known to consist of by now; together they hold all surface. Whatever rays are under

@@ -24,6 +24,9 @@ bool overlap(const Box3& a, const Box3& b) {
   return true;
 }
 
+// The field of a solid; 0 where it is clearly outside, which is all that is asked for there.
+double value_or_outside(const Solid& solid, const Vec3d& p) { return solid.is_clearly_outside(p) ? 0 : solid.value(p); }
+
 Vec3d outward(const FieldSample& s) {
   const double steepness = length(s.gradient);
   return steepness > 0 ? s.gradient / -steepness : Vec3d{};
@@ -57,7 +60,7 @@ std::optional<std::size_t> UnitedSolids::cover_of(const PartHit& hit, const Ray&
   std::optional<std::size_t> cover;
   const Vec3d p = ray.at(hit.t);
   for_each_other(hit.solid, p, [&](std::size_t other) {
-    if (solids_[other].solid->value(p) > 1 + clearly) cover = other;
+    if (value_or_outside(*solids_[other].solid, p) > 1 + clearly) cover = other;
     return !cover;
   });
   return cover;
@@ -76,7 +79,12 @@ bool UnitedSolids::is_covered(const PartHit& hit, const Ray& ray) const {
 
 bool UnitedSolids::begins_inside(const Ray& ray) const {
   const Vec3d begin = ray.at(ray.t_min);
-  return std::ranges::any_of(bodies_, [&](const Body& body) { return body.size() > 1 && largest_at(body, begin) > 1; });
+  const auto holds_begin = [&](std::size_t s) {
+    const auto& [solid, reach, body] = solids_[s];
+    return reach.contains(begin) && !solid->is_left_by(ray) && value_or_outside(*solid, begin) > 1;
+  };
+  return std::ranges::any_of(
+      bodies_, [&](const Body& body) { return body.size() > 1 && std::ranges::any_of(body, holds_begin); });
 }
 
 PartHit UnitedSolids::nearest(std::span<const std::size_t> solids, const Ray& ray,
@@ -134,7 +142,7 @@ PartHit UnitedSolids::first_hit(const Ray& ray, std::vector<RayVisit>* visits) c
 double UnitedSolids::largest_at(const Body& body, const Vec3d& p) const {
   double largest = 0;
   for (const std::size_t s : body)
-    if (solids_[s].reach.contains(p)) largest = std::max(largest, solids_[s].solid->value(p));
+    if (solids_[s].reach.contains(p)) largest = std::max(largest, value_or_outside(*solids_[s].solid, p));
   return largest;
 }
 
@@ -144,7 +152,7 @@ void UnitedSolids::free_start(std::size_t solid, const Ray& ray, SurfaceHit& hit
   const Solid* nearest = nullptr;
   double largest = 1 - clearly;
   for_each_other(solid, hit.outside, [&](std::size_t other) {
-    const double value = solids_[other].solid->value(hit.outside);
+    const double value = value_or_outside(*solids_[other].solid, hit.outside);
     if (!(value > largest)) return true;
     nearest = solids_[other].solid;
     largest = value;

@@ -135,6 +135,36 @@ TEST(Inside, AUnionHasNoSurfaceInItsMembers) {
   EXPECT_GT(from_inside, 300);
 }
 
+// What such rays carry tells that they begin outside the member that they leave, not that nothing is in their way.
+TEST(Inside, WhatLeavesAMemberIsHiddenByTheOthers) {
+  Random random(205);
+  int hidden = 0, asked = 0;
+  for (int scene = 0; scene < 8; ++scene) {
+    const Affine turned = Affine::translate(random.vector(0.5)) * Affine::scale({-0.7, 0.7, 0.7});
+    const Body body =
+        body_of({placed(random_scene(random, {4, contact_alpha(4)}, 3)), placed(random_scene(random, {3, 1.2}, 3)),
+                 placed(random_scene(random, {4, contact_alpha(4)}, 3), turned)});
+    for (int i = 0; i < 500; ++i) {
+      const Vec3d from = random_direction(random) * 6;
+      const auto hit = body.surfaces->first_hit({from, normalize(random.vector(1) - from)});
+      if (!hit) continue;
+      ASSERT_NE(hit->around.block, nullptr);
+      for (int k = 0; k < 4; ++k) {
+        const Ray leaving = hit->leaving(normalize(random_direction(random)));
+        Ray plain = leaving;
+        plain.around = nullptr;
+        ++asked;
+        hidden += body.surfaces->occluded(leaving);
+        EXPECT_EQ(body.surfaces->occluded(leaving), body.surfaces->occluded(plain));
+        EXPECT_EQ(body.surfaces->occluded(leaving), body.surfaces->first_hit(leaving).has_value());
+      }
+    }
+  }
+  std::cout << "  " << hidden << " of " << asked << " hidden\n";
+  EXPECT_GT(hidden, 2000);
+  EXPECT_LT(hidden, asked - 2000);
+}
+
 // In the valley between two members a step along the normal of one would end in the other.
 TEST(Inside, StartsBetweenMembersAreOutside) {
   Random random(204);

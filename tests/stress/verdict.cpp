@@ -268,8 +268,8 @@ void count_crossings(const StressScene& scene, const Ray& line, Random& random, 
   RayRecord going, coming;
   const auto entry = scene.surfaces().first_hit(there, going), exit = scene.surfaces().first_hit(back, coming);
   ++p.lines;
-  // `ray` met surface at t; the record is that of the ray that met nothing the other way, from `end` on: a mere touch at
-  // t is no crossing because of what lies behind `end`.
+  // `ray` met surface at t; the record is that of the ray that met nothing the other way, from `end` on: a mere touch
+  // at t is no crossing because of what lies behind `end`.
   const auto one_way_only = [&](const Ray& ray, double t, double end, const RayRecord& empty_handed) {
     if (is_bare_point(scene, ray, t)) {
       ++p.points;
