@@ -2,18 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace marrow {
 
 double RaySpacing::in_cube(const Vec3d& center, double half) const {
-  if (views.empty()) return 0;
-  double least = std::numeric_limits<double>::infinity();
+  double rays = 0;  // that cross a unit of area
   for (const View& v : views) {
     const double distance = std::max(0.0, length(center - v.eye) - half * std::sqrt(3.0));
-    least = std::min(least, v.constant + v.per_distance * distance);
+    const double spacing = v.constant + v.per_distance * distance;
+    rays += 1 / (spacing * spacing);
   }
-  return least;
+  return views.empty() ? 0 : 1 / std::sqrt(rays);
 }
 
 // Figures in the README. Later samples make up for smaller cells.

@@ -61,17 +61,21 @@ Result<std::unique_ptr<EmbreeSurfaces>> EmbreeSurfaces::make(std::vector<PlacedS
   return s;
 }
 
-// Many placements of one blend would each list its parts: beyond some 10^5 parts (200 bytes each, with Embree's)
-// elements stay whole.
+// Many placements of one blend would each list its parts, of 200 bytes with Embree's: beyond many of them elements stay
+// whole. What is thin in its elements, such as neurons, gains so much that twice as many pay, as far as there is room.
 void EmbreeSurfaces::refine() const {
-  constexpr std::size_t most_parts = std::size_t{1} << 19;
+  constexpr std::size_t many_parts = std::size_t{1} << 19, most_parts = 2 * many_parts;
+  constexpr double thin = 0.375;  // of the area of elements, which is what rays come to; figures in docs/performance.md
   const std::lock_guard lock(refining_);
   std::vector<PartsOfSolid> solids;
-  Division division;
+  Division division, undivided;
   for (const PlacedSolid& p : solids_) {
-    solids.push_back({p.solid.get(), p.object, p.solid->parts()});
-    division.add(solids.back().parts);
-    if (division.parts > most_parts) return;
+    std::vector<SolidPart> parts = p.solid->parts(), whole = whole_elements(*p.solid);
+    undivided.add(whole);
+    if (division.parts + parts.size() > most_parts) parts = std::move(whole);
+    division.add(parts);
+    if (division.parts > many_parts && division.area > thin * undivided.area) return;
+    solids.push_back({p.solid.get(), p.object, std::move(parts)});
   }
   if (division.is_like(division_)) return;
   division_ = division;

@@ -35,6 +35,13 @@ TEST(RaySpacing, IsNowhereLessThanInTheCube) {
   EXPECT_EQ(RaySpacing{}.least_cell({1, 2, 3}, 0.5), 0);
 }
 
+TEST(RaySpacing, RaysOfAllPlacementsComeTogether) {
+  RaySpacing spacing = seen_from({0, 0, 9}, false);
+  const double alone = spacing.in_cube({0, 0, 0}, 0.1);
+  spacing.views.resize(100, spacing.views.front());
+  EXPECT_NEAR(spacing.in_cube({0, 0, 0}, 0.1), alone / 10, 1e-12);
+}
+
 TEST(RaySpacing, CellsAreLargerWhereRaysComeOnce) {
   const RaySpacing often = seen_from({0, 0, 9}, false), once = seen_from({0, 0, 9}, true);
   EXPECT_GT(once.least_cell({0, 0, 0}, 0.1), often.least_cell({0, 0, 0}, 0.1));
