@@ -49,6 +49,9 @@ Result<std::unique_ptr<EmbreeSurfaces>> EmbreeSurfaces::make(std::vector<PlacedS
   std::unique_ptr<EmbreeSurfaces> s(new EmbreeSurfaces(std::move(solids), std::move(planes)));
   s->device_.reset(rtcNewDevice(config.c_str()));
   if (!s->device_) return failure("Embree cannot make a device with \"" + config + "\"");
+  auto united = UnitedSolids::make(s->device_.get(), s->solids_);
+  if (!united) return united.why();
+  s->united_ = std::move(*united);
   std::vector<PartsOfSolid> elements;
   for (const PlacedSolid& p : s->solids_) {
     s->extent_.include(p.solid->extent());

@@ -45,7 +45,7 @@ class EmbreeSurfaces final : public Surfaces {
 
  private:
   EmbreeSurfaces(std::vector<PlacedSolid> solids, std::vector<PlacedPlane> planes)
-      : solids_(std::move(solids)), planes_(std::move(planes)), united_(solids_) {}
+      : solids_(std::move(solids)), planes_(std::move(planes)) {}
   // How finely space is divided: a ray meets a box with a probability that goes with its area.
   struct Division {
     std::size_t parts = 0;
@@ -89,9 +89,9 @@ class EmbreeSurfaces final : public Surfaces {
 
   std::vector<PlacedSolid> solids_;
   std::vector<PlacedPlane> planes_;
-  UnitedSolids united_;
   Box3 extent_;  // of all solids
   EmbreeDevice device_;
+  UnitedSolids united_;
   std::unique_ptr<const PartHierarchy> whole_;  // of whole elements
   // All stay, since rays may be under way in them.
   mutable std::vector<std::unique_ptr<const PartHierarchy>> refined_;

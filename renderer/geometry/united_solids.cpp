@@ -34,6 +34,17 @@ Vec3d outward(const FieldSample& s) {
 
 }  // namespace
 
+Result<UnitedSolids> UnitedSolids::make(RTCDeviceTy* device, std::span<const PlacedSolid> solids) {
+  UnitedSolids united(solids);
+  // Whatever is alone in its body needs not be found.
+  std::vector<Box3> reaches;
+  for (const Placed& s : united.solids_) reaches.push_back(united.bodies_[s.body].size() > 1 ? s.reach : Box3{});
+  auto index = BoxIndex::make(device, std::move(reaches));
+  if (!index) return index.why();
+  united.reaches_ = std::move(*index);
+  return united;
+}
+
 UnitedSolids::UnitedSolids(std::span<const PlacedSolid> solids) {
   std::map<ObjectId, std::size_t> bodies;
   for (const PlacedSolid& placed : solids) {
@@ -49,19 +60,22 @@ UnitedSolids::UnitedSolids(std::span<const PlacedSolid> solids) {
   }
 }
 
-// use(index) of those whose boxes hold p; it says whether to go on.
+// use(index) of those whose boxes hold p, in any order; it says whether to go on.
 template <class Use>
 void UnitedSolids::for_each_other(std::size_t solid, const Vec3d& p, const Use& use) const {
-  for (const std::size_t other : bodies_[solids_[solid].body])
-    if (other != solid && solids_[other].reach.contains(p) && !use(other)) return;
+  const std::size_t body = solids_[solid].body;
+  if (bodies_[body].size() == 1) return;
+  reaches_.for_each_at(p,
+                       [&](std::size_t other) { return other == solid || solids_[other].body != body || use(other); });
 }
 
+// The first of them, so that the order in which they are found shows nowhere.
 std::optional<std::size_t> UnitedSolids::cover_of(const PartHit& hit, const Ray& ray) const {
   std::optional<std::size_t> cover;
   const Vec3d p = ray.at(hit.t);
   for_each_other(hit.solid, p, [&](std::size_t other) {
-    if (value_or_outside(*solids_[other].solid, p) > 1 + clearly) cover = other;
-    return !cover;
+    if ((!cover || other < *cover) && value_or_outside(*solids_[other].solid, p) > 1 + clearly) cover = other;
+    return true;
   });
   return cover;
 }
@@ -79,12 +93,13 @@ bool UnitedSolids::is_covered(const PartHit& hit, const Ray& ray) const {
 
 bool UnitedSolids::begins_inside(const Ray& ray) const {
   const Vec3d begin = ray.at(ray.t_min);
-  const auto holds_begin = [&](std::size_t s) {
-    const auto& [solid, reach, body] = solids_[s];
-    return reach.contains(begin) && !solid->is_left_by(ray) && value_or_outside(*solid, begin) > 1;
-  };
-  return std::ranges::any_of(
-      bodies_, [&](const Body& body) { return body.size() > 1 && std::ranges::any_of(body, holds_begin); });
+  bool is_inside = false;
+  reaches_.for_each_at(begin, [&](std::size_t s) {
+    const Solid& solid = *solids_[s].solid;
+    is_inside = !solid.is_left_by(ray) && value_or_outside(solid, begin) > 1;
+    return !is_inside;
+  });
+  return is_inside;
 }
 
 PartHit UnitedSolids::nearest(std::span<const std::size_t> solids, const Ray& ray,
@@ -139,28 +154,31 @@ PartHit UnitedSolids::first_hit(const Ray& ray, std::vector<RayVisit>* visits) c
   return best;
 }
 
-double UnitedSolids::largest_at(const Body& body, const Vec3d& p) const {
-  double largest = 0;
-  for (const std::size_t s : body)
-    if (solids_[s].reach.contains(p)) largest = std::max(largest, value_or_outside(*solids_[s].solid, p));
+double UnitedSolids::largest_beside(std::size_t solid, const Vec3d& p) const {
+  const auto value = [&](std::size_t s) { return value_or_outside(*solids_[s].solid, p); };
+  double largest = solids_[solid].reach.contains(p) ? value(solid) : 0;
+  for_each_other(solid, p, [&](std::size_t other) {
+    largest = std::max(largest, value(other));
+    return true;
+  });
   return largest;
 }
 
 // Away from both, back along the ray or on along it, or, where two all but touch, to a side: the first of growing steps
 // that is outside all of the body.
 void UnitedSolids::free_start(std::size_t solid, const Ray& ray, SurfaceHit& hit) const {
-  const Solid* nearest = nullptr;
+  std::optional<std::size_t> nearest;
   double largest = 1 - clearly;
   for_each_other(solid, hit.outside, [&](std::size_t other) {
     const double value = value_or_outside(*solids_[other].solid, hit.outside);
-    if (!(value > largest)) return true;
-    nearest = solids_[other].solid;
+    if (!(value > largest || (value == largest && other < nearest))) return true;
+    nearest = other;
     largest = value;
     return true;
   });
-  if (nearest == nullptr) return;
-  const Vec3d normal = hit.normal, away = outward(nearest->sample(hit.outside)), back = -ray.direction.vec();
-  const Body& body = bodies_[solids_[solid].body];
+  if (!nearest) return;
+  const Vec3d normal = hit.normal, away = outward(solids_[*nearest].solid->sample(hit.outside)),
+              back = -ray.direction.vec();
   const Box3& reach = solids_[solid].reach;
   const double first = first_step(hit, reach), longest = 1e-2 * max_component(reach.size());
   const Frame frame = Frame::around(hit.normal);
@@ -168,7 +186,7 @@ void UnitedSolids::free_start(std::size_t solid, const Ray& ray, SurfaceHit& hit
     for (const Vec3d& way : {normal + away, back, away + back, normal + back, away, -back, frame.to_world({1, 0, 0}),
                              frame.to_world({-1, 0, 0}), frame.to_world({0, 1, 0}), frame.to_world({0, -1, 0})})
       for (double step = first; length_squared(way) > 0 && step < std::max(longest, 16 * first); step *= 2)
-        if (const Vec3d p = hit.position + way * step; largest_at(body, p) < 1 - margin) {
+        if (const Vec3d p = hit.position + way * step; largest_beside(solid, p) < 1 - margin) {
           hit.outside = p;
           return;
         }
@@ -181,8 +199,7 @@ std::optional<Vec3d> UnitedSolids::start_before(std::size_t solid, const Ray& ra
   if (!(longest > 0)) return {};
   for (const double margin : {3 * clearly, least_margin})
     for (double step = std::min(first_step(hit, reach), longest); step <= longest; step *= 2)
-      if (const Vec3d p = hit.position - ray.direction * step; largest_at(bodies_[solids_[solid].body], p) < 1 - margin)
-        return p;
+      if (const Vec3d p = hit.position - ray.direction * step; largest_beside(solid, p) < 1 - margin) return p;
   return {};
 }
 
@@ -195,7 +212,7 @@ bool UnitedSolids::may_part(const Vec3d& a, const Vec3d& b, ObjectId of) const {
 }
 
 bool UnitedSolids::is_outside(std::size_t solid, const Vec3d& p) const {
-  return largest_at(bodies_[solids_[solid].body], p) < 1 - least_margin;
+  return largest_beside(solid, p) < 1 - least_margin;
 }
 
 }  // namespace marrow

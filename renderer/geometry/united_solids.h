@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "field/base/result.h"
+#include "renderer/geometry/box_index.h"
 #include "renderer/geometry/part_visit.h"
 #include "renderer/geometry/solid.h"
 
@@ -18,8 +20,8 @@ namespace marrow {
 class UnitedSolids {
  public:
   UnitedSolids() = default;
-  /// The solids must outlive it.
-  explicit UnitedSolids(std::span<const PlacedSolid>);
+  /// Errors: Embree could not build its hierarchy. The device and the solids must outlive it.
+  static Result<UnitedSolids> make(RTCDeviceTy*, std::span<const PlacedSolid>);
 
   /// Whether the first hit of all solids lies inside another one of its object.
   bool is_covered(const PartHit&, const Ray&) const;
@@ -49,17 +51,20 @@ class UnitedSolids {
     Box3 box;
   };
 
+  explicit UnitedSolids(std::span<const PlacedSolid>);
   std::optional<std::size_t> cover_of(const PartHit&, const Ray&) const;
   PartHit nearest(std::span<const std::size_t> solids, const Ray&, std::vector<RayVisit>*) const;
   PartHit uncovered(PartHit, const Ray&, std::vector<RayVisit>*) const;
   PartHit exit_of(std::size_t cover, const Ray&, double t, std::vector<RayVisit>*) const;
   template <class Use>
   void for_each_other(std::size_t solid, const Vec3d& p, const Use&) const;
-  double largest_at(const Body&, const Vec3d& p) const;
+  // Of the fields of a solid and of the others of its body; what is clearly outside counts as 0.
+  double largest_beside(std::size_t solid, const Vec3d& p) const;
 
   std::vector<Placed> solids_;
   std::vector<Body> bodies_;
   std::vector<Extent> extents_;  // of bodies
+  BoxIndex reaches_;             // of solids; empty boxes of those that are alone in their bodies
 };
 
 }  // namespace marrow

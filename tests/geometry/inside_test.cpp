@@ -95,44 +95,70 @@ double passed_over(const FieldProgram& program, const Ray& ray, double end) {
   return most;
 }
 
+struct Met {
+  int hits = 0, from_inside = 0;
+};
+
+// Of 500 rays that begin anywhere in the bounds of a body.
+void expect_no_surface_in_members(Random& random, const Body& body, Met& met) {
+  const Box3 bounds = body.surfaces->bounds();
+  std::vector<Ray> rays;
+  for (int i = 0; i < 500; ++i) rays.push_back({random_in(random, bounds), normalize(random_direction(random))});
+  std::vector<std::optional<SurfaceHit>> together(rays.size());
+  body.surfaces->first_hits(rays, together);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray& ray = rays[i];
+    if (i == 300) body.surfaces->refine();
+    const double begin = value(body.program, ray.origin);
+    if (std::fabs(begin - 1) < 1e-4) continue;
+    RayRecord record;
+    const auto hit = body.surfaces->first_hit(ray, record);
+    ASSERT_EQ(hit.has_value(), together[i].has_value());
+    ASSERT_TRUE(hit || begin < 1);
+    met.from_inside += begin > 1;
+    EXPECT_LT(passed_over(body.program, ray, hit ? hit->t : 2 * length(bounds.size())), 1e-4);
+    if (!hit) continue;
+    ++met.hits;
+    EXPECT_EQ(hit->t, together[i]->t);
+    EXPECT_EQ(hit->outside, together[i]->outside);
+    EXPECT_NEAR(value(body.program, hit->position), 1, 1e-4);
+    EXPECT_LT(value(body.program, hit->outside), 1);
+    Ray shorter = ray;
+    shorter.t_max = begin > 1 ? std::nextafter(hit->t, 0.0) : 0.999 * hit->t;
+    EXPECT_FALSE(body.surfaces->occluded(shorter));
+  }
+}
+
 TEST(Inside, AUnionHasNoSurfaceInItsMembers) {
   Random random(203);
-  int hits = 0, from_inside = 0;
+  Met met;
   for (int scene = 0; scene < 8; ++scene) {
     const Affine squeezed = Affine::translate(random.vector(0.3)) * Affine::scale({0.6, 1.2, -0.8});
     const FieldTree tree = tree_of(placed(ball(random.vector(0.5), 0.5)));
-    const Body body = body_of({placed(random_scene(random, {4, contact_alpha(4)}, 3)),
-                               placed(random_scene(random, {3, 1.2}, 2), squeezed), placed(ball({0.2, 0, 0}, 0.6))},
-                              {tree});
-    const Box3 bounds = body.surfaces->bounds();
-    std::vector<Ray> rays;
-    for (int i = 0; i < 500; ++i) rays.push_back({random_in(random, bounds), normalize(random_direction(random))});
-    std::vector<std::optional<SurfaceHit>> together(rays.size());
-    body.surfaces->first_hits(rays, together);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Ray& ray = rays[i];
-      if (i == 300) body.surfaces->refine();
-      const double begin = value(body.program, ray.origin);
-      if (std::fabs(begin - 1) < 1e-4) continue;
-      RayRecord record;
-      const auto hit = body.surfaces->first_hit(ray, record);
-      ASSERT_EQ(hit.has_value(), together[i].has_value());
-      ASSERT_TRUE(hit || begin < 1);
-      from_inside += begin > 1;
-      EXPECT_LT(passed_over(body.program, ray, hit ? hit->t : 2 * length(bounds.size())), 1e-4);
-      if (!hit) continue;
-      ++hits;
-      EXPECT_EQ(hit->t, together[i]->t);
-      EXPECT_EQ(hit->outside, together[i]->outside);
-      EXPECT_NEAR(value(body.program, hit->position), 1, 1e-4);
-      EXPECT_LT(value(body.program, hit->outside), 1);
-      Ray shorter = ray;
-      shorter.t_max = begin > 1 ? std::nextafter(hit->t, 0.0) : 0.999 * hit->t;
-      EXPECT_FALSE(body.surfaces->occluded(shorter));
-    }
+    expect_no_surface_in_members(
+        random,
+        body_of({placed(random_scene(random, {4, contact_alpha(4)}, 3)),
+                 placed(random_scene(random, {3, 1.2}, 2), squeezed), placed(ball({0.2, 0, 0}, 0.6))},
+                {tree}),
+        met);
   }
-  std::cout << "  " << hits << " hits, " << from_inside << " rays from inside\n";
-  EXPECT_GT(from_inside, 300);
+  std::cout << "  " << met.hits << " hits, " << met.from_inside << " rays from inside\n";
+  EXPECT_GT(met.from_inside, 300);
+}
+
+// So many that they are found by a hierarchy of their own.
+TEST(Inside, AUnionOfManyHasNoSurfaceInItsMembers) {
+  Random random(206);
+  Met met;
+  for (const double far : {0.0, 1e5})
+    for (int scene = 0; scene < 3; ++scene) {
+      std::vector<PlacedBlend> balls;
+      for (int i = 0; i < 60; ++i)
+        balls.push_back(placed(ball(Vec3d{far, 0, -far} + random.vector(2), random.between(0.2, 0.8))));
+      expect_no_surface_in_members(random, body_of(std::move(balls)), met);
+    }
+  std::cout << "  " << met.hits << " hits, " << met.from_inside << " rays from inside\n";
+  EXPECT_GT(met.from_inside, 300);
 }
 
 // What such rays carry tells that they begin outside the member that they leave, not that nothing is in their way.
