@@ -49,6 +49,7 @@ Json json(const WorkloadFigures& w) {
   Json out{{"name", w.name},
            {"about", w.about},
            {"primitives", w.primitives},
+           {"mesh_spacing_scene_units", w.mesh_spacing},
            {"cells", w.cells},
            {"cells_with_rays", w.blocks},
            {"memory_bytes", w.bytes},
@@ -123,10 +124,7 @@ std::string bench_text(const BenchSettings& settings) {
 }
 
 std::string bench_json(const BenchSettings& settings, const std::vector<WorkloadFigures>& all) {
-  Json out{{"size_pixels", settings.size},
-           {"threads", settings.threads},
-           {"rounds", settings.rounds},
-           {"mesh_spacing_scene_units", settings.mesh_spacing}};
+  Json out{{"size_pixels", settings.size}, {"threads", settings.threads}, {"rounds", settings.rounds}};
   out["workloads"] = Json::array();
   for (const auto& w : all) out["workloads"].push_back(json(w));
   return out.dump(2) + '\n';

@@ -73,6 +73,7 @@ struct SliceCommand {
 };
 
 struct BenchCommand {
+  std::vector<std::string> workloads;  ///< names, or files that read_workload() knows; empty: all that have names
   BenchSettings settings;
   bool json = false;
   std::optional<std::filesystem::path> write_to;  ///< a folder: scene files are written there and nothing is run

@@ -12,7 +12,6 @@
 
 #include "renderer/app/option_values.h"
 #include "renderer/app/print.h"
-#include "renderer/bench/workload.h"
 #include "renderer/output/colormap.h"
 #include "renderer/scene/suggestion.h"
 
@@ -163,9 +162,11 @@ void describe(CLI::App& app, SliceCommand& c) {
 }
 
 void describe(CLI::App& app, BenchCommand& c) {
-  app.add_option("workloads", c.settings.workloads, "w1 (867 segments), w2 (10,000 segments), w3 (200 points); all")
-      ->check(CLI::IsMember(workload_names()))
-      ->type_name("NAME");
+  app.add_option(
+         "workloads", c.workloads,
+         "w1 (867 segments), w2 (10,000 segments), w3 (200 points), or skeletons of your own: .txt as the peers "
+         "read it (docs/command-line.md), .swc, .obj, .csv, .xyz, .pdb, .hair; default: w1, w2 and w3")
+      ->type_name("NAME|FILE");
   app.add_flag("--json", c.json, "As JSON");
   app.add_option("--size", c.settings.size, "Pixels of a side; default 1024")
       ->check(CLI::Range(16, 8192))
@@ -176,8 +177,9 @@ void describe(CLI::App& app, BenchCommand& c) {
   app.add_option("--rounds", c.settings.rounds, "Turns of which medians are taken; default 3")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
-  app.add_option("--mesh", c.settings.mesh_spacing, "Grid of the meshed rival, scene units; 0: none; default 0.02")
-      ->check(CLI::Range(0.0, 1.0))
+  app.add_option("--mesh", c.settings.mesh_spacing,
+                 "Grid of the meshed rival, scene units; 0: none; default: a 500th of the workload")
+      ->check(CLI::Range(0.0, 1e15))
       ->type_name("H");
   app.add_flag_callback(
       "--no-processes", [&c] { c.settings.processes = false; }, "Leaves out whole processes, and so POV-Ray");
@@ -191,6 +193,7 @@ void describe(CLI::App& app, BenchCommand& c) {
   add_path(app, "--write", c.write_to, "Only writes the workloads into this folder, as scenes")->type_name("FOLDER");
   app.footer(
       "Examples:\n  marrow bench                        all workloads, and the peers that are installed\n"
+      "  marrow bench neuron.swc --mesh 0    a skeleton of your own, blended, against Embree's round cones\n"
       "  marrow bench w1 --long              with 16 samples a pixel against POV-Ray\n"
       "  marrow bench --scaling 1000000      what grows with the number of segments\n"
       "  marrow bench w2 --write scenes      w2.yaml, to render or to profile\n"

@@ -41,7 +41,9 @@ class Measurement {
         settings_(settings),
         frame_{settings.size, settings.threads},
         scene_(folder / (workload.name + ".yaml")),
-        tell_(tell) {}
+        tell_(tell) {
+    out_.mesh_spacing = settings.mesh_spacing.value_or(max_component(workload.bounds().size()) / 500);
+  }
 
   Result<WorkloadFigures> run() {
     out_.name = workload_.name;
@@ -98,7 +100,7 @@ class Measurement {
     TriangleMesh mesh;
     seconds = cost_of([&] {
                 if (const auto scene = prepare_scene(scene_, {}, settings_.threads))
-                  mesh = dual_mesh(*scene->surfaces, settings_.mesh_spacing);
+                  mesh = dual_mesh(*scene->surfaces, out_.mesh_spacing);
               }).wall_s;
     return mesh;
   }
@@ -110,12 +112,13 @@ class Measurement {
     figures.primitives = workload_.size();
     figures.build_s = cost_of([&] { engine = embree_round_cones(workload_.flattened(), settings_.threads); }).wall_s;
     add_racer(figures, std::move(engine));
-    if (!(settings_.mesh_spacing > 0)) return;
+    if (!(out_.mesh_spacing > 0)) return;
     say("meshing");
     figures.name = "embree triangles";
     const TriangleMesh mesh = mesh_of_scene(figures.mesh_s);
     figures.primitives = mesh.triangles.size();
-    figures.build_s = cost_of([&] { engine = embree_triangles(mesh, settings_.threads); }).wall_s;
+    figures.build_s =
+        cost_of([&] { engine = embree_triangles(mesh, workload_.thinnest_radius() / 20, settings_.threads); }).wall_s;
     add_racer(figures, std::move(engine));
   }
 
@@ -231,23 +234,12 @@ class Measurement {
   WorkloadFigures out_;
 };
 
-Result<std::vector<Workload>> chosen(const BenchSettings& settings) {
-  std::vector<Workload> workloads;
-  for (const std::string& name : settings.workloads.empty() ? workload_names() : settings.workloads) {
-    auto workload = workload_named(name);
-    if (!workload) return workload.why();
-    workloads.push_back(std::move(*workload));
-  }
-  return workloads;
-}
-
 }  // namespace
 
-Result<std::vector<WorkloadFigures>> run_benchmark(const BenchSettings& settings,
+Result<std::vector<WorkloadFigures>> run_benchmark(const std::vector<Workload>& workloads,
+                                                   const BenchSettings& settings,
                                                    const std::function<void(const std::string&)>& tell,
                                                    const std::function<void(const WorkloadFigures&)>& found) {
-  const auto workloads = chosen(settings);
-  if (!workloads) return workloads.why();
   const TemporaryFolder folder;
   if (folder.path().empty()) return failure("cannot make a folder for temporary files");
   std::vector<WorkloadFigures> all;
@@ -258,7 +250,7 @@ Result<std::vector<WorkloadFigures>> run_benchmark(const BenchSettings& settings
     all.push_back(std::move(*figures));
     return Done{};
   };
-  for (const Workload& w : *workloads)
+  for (const Workload& w : workloads)
     if (auto status = measure(w, settings); !status) return status.why();
   BenchSettings scaling = settings;
   scaling.mesh_spacing = 0;

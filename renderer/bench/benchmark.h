@@ -10,17 +10,18 @@
 #include "field/base/result.h"
 #include "renderer/bench/cost.h"
 #include "renderer/bench/ray_engine.h"
+#include "renderer/bench/workload.h"
 
 namespace marrow {
 
 struct BenchSettings {
-  std::vector<std::string> workloads;  ///< names of workload.h; empty: all
-  int size = 1024;                     ///< pixels of a side
+  int size = 1024;  ///< pixels of a side
   int threads = 2;
-  int rounds = 3;              ///< of which medians are taken
-  int samples = 16;            ///< of the longer whole run
-  double mesh_spacing = 0.02;  ///< grid of the meshed rival, scene units; 0 leaves it out
-  bool processes = true;       ///< whole processes too: this program, and POV-Ray where it is installed
+  int rounds = 3;    ///< of which medians are taken
+  int samples = 16;  ///< of the longer whole run
+  /// Grid of the meshed rival, scene units; 0 leaves it out. Default: a 500th of the workload's largest side.
+  std::optional<double> mesh_spacing = {};
+  bool processes = true;  ///< whole processes too: this program, and POV-Ray where it is installed
   bool povray = true;
   bool rules = true;                ///< rules for `alpha` against the plain sum
   bool many_samples = false;        ///< whole processes with `samples` samples too: minutes
@@ -59,6 +60,7 @@ struct RuleFigures {
 struct WorkloadFigures {
   std::string name, about;
   std::size_t primitives = 0;
+  double mesh_spacing = 0;             ///< scene units; 0: no mesh
   double read_s = 0, build_s = 0;      ///< the scene's text; surfaces
   double first_ray_s = 0;              ///< from the file to the first answer
   Cost first_frame;                    ///< while cells are made ready
@@ -73,9 +75,9 @@ struct WorkloadFigures {
   std::vector<std::string> missing;       ///< what could not be compared, and why
 };
 
-/// `tell` hears what is being done, `found` each workload's figures as soon as they are there. Errors: an unknown
-/// workload, a folder for temporary files that cannot be used.
-Result<std::vector<WorkloadFigures>> run_benchmark(const BenchSettings&,
+/// `tell` hears what is being done, `found` each workload's figures as soon as they are there. Errors: a workload of
+/// which Marrow makes no scene, a folder for temporary files that cannot be used.
+Result<std::vector<WorkloadFigures>> run_benchmark(const std::vector<Workload>&, const BenchSettings&,
                                                    const std::function<void(const std::string&)>& tell,
                                                    const std::function<void(const WorkloadFigures&)>& found);
 

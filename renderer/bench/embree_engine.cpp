@@ -12,8 +12,6 @@ namespace marrow {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
-// Rays leave these surfaces with an offset, as is usual for float geometry: a twentieth of the thinnest hair's radius.
-constexpr double offset = 1.5e-3;
 
 RTCRay to_embree(const Ray& ray) {
   RTCRay r{};
@@ -30,8 +28,11 @@ RTCRay to_embree(const Ray& ray) {
 
 class EmbreeEngine final : public RayEngine {
  public:
-  explicit EmbreeEngine(int threads)
-      : device_(rtcNewDevice(("threads=" + std::to_string(threads)).c_str())), scene_(rtcNewScene(device_.get())) {
+  /// Rays leave at a distance, as is usual for float geometry.
+  EmbreeEngine(int threads, double offset)
+      : offset_(offset),
+        device_(rtcNewDevice(("threads=" + std::to_string(threads)).c_str())),
+        scene_(rtcNewScene(device_.get())) {
     rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
   }
 
@@ -49,7 +50,7 @@ class EmbreeEngine final : public RayEngine {
     if (dot(normal, ray.direction) > 0) normal = -normal;
     hit.position = ray.at(static_cast<double>(query.ray.tfar));
     hit.normal = UnitVec3::unchecked(normal);
-    hit.outside = hit.position + normal * offset;
+    hit.outside = hit.position + normal * offset_;
     return true;
   }
   bool occluded(const Ray& ray) const override {
@@ -72,6 +73,7 @@ class EmbreeEngine final : public RayEngine {
   }
 
  private:
+  double offset_;
   EmbreeDevice device_;
   EmbreeScene scene_;
 };
@@ -116,15 +118,15 @@ void attach_spheres(EmbreeEngine& engine, const std::vector<PointSkeleton>& poin
 }  // namespace
 
 std::unique_ptr<RayEngine> embree_round_cones(const Workload& workload, int threads) {
-  auto engine = std::make_unique<EmbreeEngine>(threads);
+  auto engine = std::make_unique<EmbreeEngine>(threads, workload.thinnest_radius() / 20);
   if (!workload.segments.empty()) attach_cones(*engine, workload.segments);
   if (!workload.points.empty()) attach_spheres(*engine, workload.points);
   if (!engine->commit()) return nullptr;
   return engine;
 }
 
-std::unique_ptr<RayEngine> embree_triangles(const TriangleMesh& mesh, int threads) {
-  auto engine = std::make_unique<EmbreeEngine>(threads);
+std::unique_ptr<RayEngine> embree_triangles(const TriangleMesh& mesh, double offset, int threads) {
+  auto engine = std::make_unique<EmbreeEngine>(threads, offset);
   RTCGeometry g = engine->geometry(RTC_GEOMETRY_TYPE_TRIANGLE);
   fill(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.vertices);
   fill(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);

@@ -61,8 +61,9 @@ struct TriangleMesh {
 };
 
 /// Embree's own primitives under its own hierarchy, single rays, best build quality: round linear curves (cones with
-/// spherical ends) and spheres, without any blend. Null when Embree cannot build them.
+/// spherical ends) and spheres, without any blend. Rays leave at a distance of a twentieth of the thinnest radius,
+/// those of triangles at `offset`. Null when Embree cannot build them.
 std::unique_ptr<RayEngine> embree_round_cones(const Workload&, int threads);
-std::unique_ptr<RayEngine> embree_triangles(const TriangleMesh&, int threads);
+std::unique_ptr<RayEngine> embree_triangles(const TriangleMesh&, double offset, int threads);
 
 }  // namespace marrow

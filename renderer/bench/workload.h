@@ -13,8 +13,8 @@
 
 namespace marrow {
 
-/// Skeletons, a camera that looks along -z over a square picture, and one sun. Coordinates and radii have five
-/// decimals, as in the text files by which the peers know these scenes.
+/// Skeletons, a camera that looks along -z over a square picture, and one sun. Coordinates and radii of those that have
+/// names have five decimals, as in the text files by which the peers know them.
 struct Workload {
   std::string name, about;
   Vec3d eye;
@@ -32,6 +32,8 @@ struct Workload {
   Workload flattened() const;
   /// Of all primitives with their radii.
   Box3 bounds() const;
+  /// Above 0, of all primitives.
+  double thinnest_radius() const;
 };
 
 /// w1: 867 segments, a creature. w2: 10,000 segments in 500 curls. w3: 200 points.

@@ -1,6 +1,7 @@
 // Workloads by name, their bounds, and their scene files.
 #include <algorithm>
 #include <fstream>
+#include <limits>
 #include <span>
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@
 namespace marrow {
 namespace {
 
-// From so many segments on they stand in an SWC file, which is read faster and is shorter.
+// From so many primitives on they stand in an SWC file, which is read faster and is shorter.
 constexpr std::size_t many = 20'000;
 
 struct Named {
@@ -69,7 +70,7 @@ void write_primitives(std::ostream& out, const Workload& w) {
     fmt::print(out, "          - point: {{at: {}, radius: {:.10g}}}\n", text(p.at), p.radius);
 }
 
-// A segment that begins where the one before it ended continues its branch.
+// A segment that begins where the one before it ended continues its branch; a root without children is a point.
 void write_swc(std::ostream& out, const Workload& w) {
   int id = 0;
   const SegmentSkeleton* before = nullptr;
@@ -80,6 +81,8 @@ void write_swc(std::ostream& out, const Workload& w) {
     ++id;
     before = &s;
   }
+  for (const auto& p : w.points)
+    fmt::print(out, "{} 0 {:.10g} {:.10g} {:.10g} {:.10g} -1\n", ++id, p.at.x, p.at.y, p.at.z, p.radius);
 }
 
 Status written(std::ofstream& out, const std::filesystem::path& path) {
@@ -107,6 +110,13 @@ Box3 Workload::bounds() const {
   return all;
 }
 
+double Workload::thinnest_radius() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& s : segments) least = std::min({least, s.radius_from, s.radius_to});
+  for (const auto& p : points) least = std::min(least, p.radius);
+  return least;
+}
+
 Workload Workload::flattened() const {
   if (places.empty()) return *this;
   Workload flat = *this;
@@ -129,14 +139,15 @@ std::vector<std::string> workload_names() {
 Result<Workload> workload_named(std::string_view name) {
   for (const Named& n : table)
     if (name == n.name) return n.make();
-  return failure("there is no workload \"" + std::string(name) + "\"; there are w1, w2 and w3");
+  return failure("there is no workload \"" + std::string(name) +
+                 "\"; there are w1, w2 and w3, and files that end with .txt or as skeletons do");
 }
 
 Status write_scene(const Workload& w, int film_size, const std::filesystem::path& scene) {
   std::ofstream out(scene);
   write_head(out, w, film_size);
   write_blend_head(out, w);
-  if (w.segments.size() < many) {
+  if (w.segments.size() + w.points.size() < many) {
     write_primitives(out, w);
     write_places(out, w);
     return written(out, scene);

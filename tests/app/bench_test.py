@@ -54,6 +54,18 @@ class BenchTest(ProgramTest):
 
     def test_wrong_names_are_told(self):
         self.assertIn("w1", self.expect(2, "bench", "w9").stderr)
+        self.expect(66, "bench", "missing.swc")
+
+    def test_skeletons_of_ones_own(self):
+        (self.folder / "two balls.txt").write_text("pt 0 0 0 1\npt 1.5 0 0 1\n")
+        (self.folder / "bad.txt").write_text("pt 0 0 0 1\npt 0 0 zero 1\n")
+        out = json.loads(self.expect(0, "bench", "two balls.txt", *TINY, "--no-processes", "--json", timeout=240).stdout)
+        (balls,) = out["workloads"]
+        self.assertEqual((balls["name"], balls["primitives"]), ("two_balls", 2))
+        self.assertGreater(balls["engines"][0]["frame_hits"], 100)
+        self.assertIn("bad.txt:2:8", self.expect(65, "bench", "bad.txt").stderr)
+        self.expect(65, "bench", "w1", "bad.txt", "w9", "--write", "scenes")
+        self.assertFalse((self.folder / "scenes").exists())
 
 
 if __name__ == "__main__":

@@ -71,7 +71,7 @@ TEST(EmbreeEngine, MeetsTriangles) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}};
-  const auto engine = embree_triangles(mesh, 1);
+  const auto engine = embree_triangles(mesh, 1e-3, 1);
   ASSERT_TRUE(engine);
   EngineHit hit;
   RayCounts counts;
