@@ -142,12 +142,13 @@ void FieldSolid::hits_in_parts(std::span<const LanesInPart> parts, const RayPack
                                PacketLog& log) const {
   InBlend& b = in_blend();
   b.places.clear();
-  for (const auto& [part, lanes] : parts) {
+  const bool in_world = std::ranges::all_of(parts, [](const LanesInPart& p) { return of_family(p.solid).in_world_; });
+  for (const auto& [solid, part, lanes] : parts) {
     b.places.push_back({{part->element, static_cast<const Tile*>(part->within), part->slot}, lanes});
     lanes.for_each([&](std::size_t i) {
       b.stretch[i] = 1;
-      if (!in_world_) {
-        const LocalRay local = to_local(packet.ray(i));
+      if (!in_world) {
+        const LocalRay local = of_family(solid).to_local(packet.ray(i));
         b.packet.set(i, local.ray);
         b.stretch[i] = local.stretch;
       }
@@ -155,14 +156,15 @@ void FieldSolid::hits_in_parts(std::span<const LanesInPart> parts, const RayPack
       b.visits[i] = visits_so_far(log.lanes[i]);
     });
   }
-  tracer_->first_hits(b.places, in_world_ ? packet : b.packet, any, b.cells);
-  for (const auto& [part, lanes] : parts)
+  tracer_->first_hits(b.places, in_world ? packet : b.packet, any, b.cells);
+  for (const auto& [solid, part, lanes] : parts)
     lanes.for_each([&](std::size_t i) {
-      to_world(b.cells.log[i], b.stretch[i], b.visits[i], log.lanes[i]);
+      const FieldSolid& of = of_family(solid);
+      of.to_world(b.cells.log[i], b.stretch[i], b.visits[i], log.lanes[i]);
       if (part->within == nullptr && !any) log.lanes[i].begins_inside = false;  // as of an element in hit()
       const CellHit& hit = b.cells.hit[i];
       log.lanes[i].place = hit.block;
-      const double t = std::max(packet.t_min[i], in_world_ ? hit.t : hit.t / b.stretch[i]);
+      const double t = std::max(packet.t_min[i], of.in_world_ ? hit.t : hit.t / b.stretch[i]);
       const bool met = hit.block != nullptr && t <= packet.t_max[i];
       log.t[i] = met ? t : std::numeric_limits<double>::infinity();
     });

@@ -28,6 +28,7 @@ class FieldSolid final : public Solid {
   std::vector<SolidPart> parts() const override;
   std::optional<double> hit_in_part(const SolidPart&, const Ray&, bool any, ElementLog&) const override;
   bool traces_packets() const override { return tracer_->traces_packets(); }
+  const void* family() const override { return tracer_.get(); }
   void hits_in_parts(std::span<const LanesInPart>, const RayPacket&, bool any, PacketLog&) const override;
   void describe(std::span<const HitToDescribe>) const override;
   std::size_t primitive_count() const override { return tracer_->field().size(); }
@@ -43,6 +44,7 @@ class FieldSolid final : public Solid {
     Ray ray;
     double stretch;
   };
+  static const FieldSolid& of_family(const Solid* member) { return static_cast<const FieldSolid&>(*member); }
   LocalRay to_local(const Ray&) const;
   void to_world(const CellLog&, double stretch, std::size_t visits_before, ElementLog&) const;
   template <class Place>

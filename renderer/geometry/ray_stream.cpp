@@ -19,16 +19,16 @@ std::span<T> piece_of(std::span<T> all, std::size_t first, std::size_t most) {
   return all.subspan(first, std::min(most, all.size() - first));
 }
 
-// Rays in the lanes of a packet, each in one of some parts of a solid.
+// Rays in the lanes of a packet, each in one of some parts of solids of one family.
 struct RaysInLanes {
   RayPacket packet;
   PacketLog log;
   std::array<StreamedRay*, RayPacket::size> rays;
   std::vector<LanesInPart> parts;
-  std::uint32_t solid = 0;
   std::size_t count = 0;
 
   std::size_t room() const { return RayPacket::size - count; }
+  bool takes(const Solid& solid) const { return count == 0 || parts[0].solid->family() == solid.family(); }
 };
 
 // What a thread keeps from stream to stream: rays on their way, and where they wait.
@@ -95,7 +95,7 @@ class Stream {
   void seat_all(std::span<const std::uint32_t> waiting) {
     while (!waiting.empty()) {
       RaysInLanes& in_lanes = memory_.in_lanes;
-      if (in_lanes.room() == 0 || next_part(waiting[0]).solid() != in_lanes.solid) trace();
+      if (in_lanes.room() == 0 || !in_lanes.takes(solid_of(next_part(waiting[0])))) trace();
       const auto some = waiting.first(std::min(waiting.size(), in_lanes.room()));
       seat(some, in_lanes);
       waiting = waiting.subspan(some.size());
@@ -103,13 +103,13 @@ class Stream {
   }
 
   PartEntry next_part(std::uint32_t ray) const { return *memory_.rays[ray].ahead.next(); }
+  const Solid& solid_of(PartEntry at) const { return *hierarchy_.solid(at.solid()).solid; }
 
   // No more than there is room for.
   void seat(std::span<const std::uint32_t> together, RaysInLanes& in_lanes) {
     const PartEntry at = next_part(together[0]);
     const PartsOfSolid& of = hierarchy_.solid(at.solid());
-    in_lanes.solid = at.solid();
-    in_lanes.parts.push_back({&of.parts[at.part()], LaneSet::range(in_lanes.count, together.size())});
+    in_lanes.parts.push_back({of.solid, &of.parts[at.part()], LaneSet::range(in_lanes.count, together.size())});
     for (const std::uint32_t i : together) {
       StreamedRay& ray = memory_.rays[i];
       in_lanes.rays[in_lanes.count] = &ray;
@@ -121,10 +121,9 @@ class Stream {
   void trace() {
     RaysInLanes& in_lanes = memory_.in_lanes;
     if (in_lanes.count == 0) return;
-    const Solid& solid = *hierarchy_.solid(in_lanes.solid).solid;
     const bool few = in_lanes.count < worth_a_packet;
-    if (few) solid.hits_one_by_one(in_lanes.parts, in_lanes.packet, any_, in_lanes.log);
-    else solid.hits_in_parts(in_lanes.parts, in_lanes.packet, any_, in_lanes.log);
+    if (few) Solid::hits_one_by_one(in_lanes.parts, in_lanes.packet, any_, in_lanes.log);
+    else in_lanes.parts[0].solid->hits_in_parts(in_lanes.parts, in_lanes.packet, any_, in_lanes.log);
     for (std::size_t lane = 0; lane < in_lanes.count; ++lane) {
       StreamedRay& ray = *in_lanes.rays[lane];
       take(ray, *ray.ahead.next(), in_lanes.log.t[lane], in_lanes.log.lanes[lane]);

@@ -45,8 +45,11 @@ struct SolidPart {
   int slot = 0;
 };
 
+class Solid;
+
 /// Rays of a packet that come to one part.
 struct LanesInPart {
+  const Solid* solid;
   const SolidPart* part;
   LaneSet lanes;
 };
@@ -88,13 +91,16 @@ class Solid {
   }
   /// Whether rays are traced sooner together than one by one.
   virtual bool traces_packets() const { return false; }
-  /// hit_in_part() for rays of a packet, each in one of the parts, to the same bits; `log` is of these lanes only.
+  /// The same for all solids whose rays may share a packet, wherever they are placed.
+  virtual const void* family() const { return this; }
+  /// hit_in_part() for rays of a packet, each in one of the parts, to the same bits; `log` is of these lanes only. All
+  /// solids of the parts are of this one's family.
   virtual void hits_in_parts(std::span<const LanesInPart> parts, const RayPacket& packet, bool any,
                              PacketLog& log) const {
     hits_one_by_one(parts, packet, any, log);
   }
   /// The same, sooner where there are few rays.
-  void hits_one_by_one(std::span<const LanesInPart>, const RayPacket&, bool any, PacketLog& log) const;
+  static void hits_one_by_one(std::span<const LanesInPart>, const RayPacket&, bool any, PacketLog& log);
   /// Fills normal, outside and material of hits whose positions are known.
   virtual void describe(std::span<const HitToDescribe>) const = 0;
   virtual std::size_t primitive_count() const = 0;
@@ -113,10 +119,10 @@ inline std::vector<SolidPart> Solid::parts() const {
 }
 
 inline void Solid::hits_one_by_one(std::span<const LanesInPart> parts, const RayPacket& packet, bool any,
-                                   PacketLog& log) const {
-  for (const auto& [part, lanes] : parts)
+                                   PacketLog& log) {
+  for (const auto& [solid, part, lanes] : parts)
     lanes.for_each([&](std::size_t lane) {
-      const auto t = hit_in_part(*part, packet.ray(lane), any, log.lanes[lane]);
+      const auto t = solid->hit_in_part(*part, packet.ray(lane), any, log.lanes[lane]);
       log.t[lane] = t.value_or(std::numeric_limits<double>::infinity());
     });
 }
