@@ -45,7 +45,7 @@ struct TraceOptions {
   std::optional<CellTreeSettings> cells{};
   /// To which far sources of the two levels are gathered, 4, 6 or 8; empty: by the number of pieces.
   std::optional<int> coarse_far_degree{}, fine_far_degree{};
-  /// As in CellTreeSettings; may be completed until the first ray comes.
+  /// As in CellTreeSettings.
   std::shared_ptr<const RaySpacing> spacing{};
 };
 

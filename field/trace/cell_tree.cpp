@@ -57,7 +57,6 @@ void CellTree::expand(const CubeView& parent, int depth, Level& out) const {
   }
 }
 
-// Level by level: the branches of a level are expanded in parallel, and gathered in their order.
 CellTree::CellTree(const SourceTree& sources, const NearFar& coarse, const NearFar& fine, const IsoCurve& iso,
                    const BlockKernels& kernels, int degree, const CellTreeSettings& settings)
     : sources_(sources),
@@ -68,6 +67,13 @@ CellTree::CellTree(const SourceTree& sources, const NearFar& coarse, const NearF
       most_thinnest_(most_thinnest(degree)),
       most_thinnest_if_hardly_met_(most_thinnest_if_hardly_met(degree)) {
   if (sources.pieces().empty()) return;
+  for (place_tiles(); has_too_many_tiles(); place_tiles()) ++settings_.tile_levels;
+  tiles_.reset(new Lazy<Tile>[places_.size()]);
+}
+
+// Level by level: the branches of a level are expanded in parallel, and gathered in their order.
+void CellTree::place_tiles() {
+  places_.clear();
   std::vector<CubeView> level{divider_.root()};
   for (int depth = 1; !level.empty(); ++depth) {
     std::vector<Level> expansions(level.size());
@@ -78,7 +84,15 @@ CellTree::CellTree(const SourceTree& sources, const NearFar& coarse, const NearF
       places_.insert(places_.end(), e.tiles.begin(), e.tiles.end());
     }
   }
-  tiles_.reset(new Lazy<Tile>[places_.size()]);
+}
+
+// All placements of the blend list its tiles, of some 200 bytes each time. Figures in the README.
+bool CellTree::has_too_many_tiles() const {
+  constexpr int most_levels = 4;
+  constexpr std::size_t many_small = std::size_t{1} << 16, many = std::size_t{1} << 19;
+  const std::size_t placements = settings_.spacing ? settings_.spacing->views.size() : 1;
+  const std::size_t most = settings_.tile_levels == 1 ? many_small : many;
+  return settings_.tile_levels < most_levels && places_.size() * placements > most;
 }
 
 const Tile& CellTree::tile(std::size_t i) const {

@@ -68,6 +68,8 @@ class CellTree {
 
  private:
   struct Level;
+  void place_tiles();
+  bool has_too_many_tiles() const;
   bool is_small_enough(const Divider::Octant&, const Vec3d& center, double half, int level) const;
   bool is_hardly_met(const Divider::Octant&, const Vec3d& center, double half) const;
   void expand(const CubeView&, int depth, Level& out) const;

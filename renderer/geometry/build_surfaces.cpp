@@ -42,6 +42,12 @@ struct Traced {
   std::shared_ptr<RaySpacing> spacing = std::make_shared<RaySpacing>();
 };
 
+// A field of an object, and for each of its blends the tracer; null where only the general one knows it.
+struct Compiled {
+  FieldProgram program;
+  std::vector<std::shared_ptr<Traced>> tracers;
+};
+
 // Objects one by one into solids and planes; errors of all of them are gathered.
 class Builder {
  public:
@@ -52,9 +58,12 @@ class Builder {
   Diagnostics problems;
 
   void add_all() {
+    std::vector<Compiled> fields(scene_.objects.size());
+    for (std::size_t i = 0; i < scene_.objects.size(); ++i)
+      if (const auto* field = std::get_if<FieldDescription>(&scene_.objects[i].shape)) fields[i] = compiled(*field);
     for (std::size_t i = 0; i < scene_.objects.size(); ++i) {
       const ObjectDescription& object = scene_.objects[i];
-      std::visit(Overloaded{[&](const FieldDescription& f) { add(f, object, ObjectId{i}); },
+      std::visit(Overloaded{[&](const FieldDescription&) { add(std::exchange(fields[i], {}), object, ObjectId{i}); },
                             [&](const PlaneShape& p) {
                               planes.push_back({p.point, normalize(p.normal), object.material, ObjectId{i}});
                             },
@@ -66,30 +75,43 @@ class Builder {
   }
 
  private:
-  void add(const FieldDescription& description, const ObjectDescription& object, ObjectId id) {
-    const auto program = compile(description);
+  // A tracer has to know of all placements before it is made.
+  Compiled compiled(const FieldDescription& description) {
+    auto program = compile(description);
     if (!program) {
       problems.insert(problems.end(), program.why().begin(), program.why().end());
-      return;
+      return {};
     }
-    std::map<std::size_t, Traced> placed;  // by shape
-    for (const PlacedBlend& part : program->parts()) {
-      Traced alone;
-      Traced& same = part.shared != 0 ? shared_[part.shared] : part.shape != 0 ? placed[part.shape] : alone;
+    Compiled field{std::move(*program), {}};
+    std::map<std::size_t, std::shared_ptr<Traced>> placed;  // by shape
+    for (const PlacedBlend& part : field.program.parts()) {
       // The tracer of blends knows the inverse kernel along lines; the general one takes the others.
       if (!untraceable_part(part.blend).empty()) {
-        add(TreeSolid::make(tree_of(part), object.material), object, id);
-      } else {
-        same.spacing->views.push_back(ray_spacing(scene_, part.local_from_world));
-        same.spacing->come_once = options_.one_sample;
-        if (same.solid != nullptr) solids.push_back({same.solid->placed_again(part, object.material), id});
-        else
-          same.solid =
-              add(FieldSolid::make(part, object.material, {.instruction_set = options_.isa, .spacing = same.spacing}),
-                  object, id);
+        field.tracers.push_back(nullptr);
+        continue;
       }
+      std::shared_ptr<Traced> alone;
+      auto& same = part.shared != 0 ? shared_[part.shared] : part.shape != 0 ? placed[part.shape] : alone;
+      if (same == nullptr) same = std::make_shared<Traced>();
+      same->spacing->views.push_back(ray_spacing(scene_, part.local_from_world));
+      same->spacing->come_once = options_.one_sample;
+      field.tracers.push_back(same);
     }
-    for (const FieldTree& tree : program->trees()) add(TreeSolid::make(tree, object.material), object, id);
+    return field;
+  }
+
+  void add(const Compiled& field, const ObjectDescription& object, ObjectId id) {
+    for (std::size_t i = 0; i < field.tracers.size(); ++i) {
+      const PlacedBlend& part = field.program.parts()[i];
+      Traced* const same = field.tracers[i].get();
+      if (same == nullptr) add(TreeSolid::make(tree_of(part), object.material), object, id);
+      else if (same->solid != nullptr) solids.push_back({same->solid->placed_again(part, object.material), id});
+      else
+        same->solid =
+            add(FieldSolid::make(part, object.material, {.instruction_set = options_.isa, .spacing = same->spacing}),
+                object, id);
+    }
+    for (const FieldTree& tree : field.program.trees()) add(TreeSolid::make(tree, object.material), object, id);
   }
 
   // Null for what cannot be traced.
@@ -110,7 +132,7 @@ class Builder {
  private:
   const SceneDescription& scene_;
   const SurfaceOptions& options_;
-  std::map<std::size_t, Traced> shared_;  // by PlacedBlend::shared
+  std::map<std::size_t, std::shared_ptr<Traced>> shared_;  // by PlacedBlend::shared
 };
 
 std::string embree_config(const SurfaceOptions& options, int threads) {
