@@ -49,36 +49,51 @@ TEST(RaySpacing, CellsAreLargerWhereRaysComeOnce) {
   EXPECT_GT(once.least_cell({0, 0, 0}, 0.1), often.least_cell({0, 0, 0}, 0.1));
 }
 
-// Grazing rays aside, on which hits may part where the field hardly exceeds 1.
-TEST(RaySpacing, LargerCellsHoldTheSameSurface) {
-  Random random(82);
-  const BlendField blend = random_scene(random, {4, contact_alpha(4)}, 9);
-  std::array<std::unique_ptr<BlendTracer>, 3> tracers;
-  std::size_t blocks[3];
-  for (std::size_t k = 0; k < 3; ++k) {
-    TraceOptions options;
-    if (k > 0) options.spacing = std::make_shared<const RaySpacing>(seen_from({0, 0, 9}, k == 2));
-    tracers[k] = std::move(*BlendTracer::make(blend, options));
-  }
+std::unique_ptr<BlendTracer> tracer_of(const BlendField& blend, std::optional<RaySpacing> spacing) {
+  TraceOptions options;
+  if (spacing) options.spacing = std::make_shared<const RaySpacing>(*spacing);
+  return std::move(*BlendTracer::make(blend, options));
+}
+
+// Of 2000 rays how many hit in the same place. Grazing rays aside hits may not part, where the field hardly exceeds 1.
+int same_hits(Random& random, const BlendField& blend, const BlendTracer& one, const BlendTracer& other) {
   int hits = 0;
   for (int i = 0; i < 2000; ++i) {
     const Ray ray = chord(random);
-    const auto expected = first_hit(*tracers[0], ray);
-    for (std::size_t k = 1; k < 3; ++k) {
-      const auto found = first_hit(*tracers[k], ray);
-      if (!expected || !found) {
-        const auto grazing = expected ? expected : found;
-        if (grazing) { EXPECT_NEAR(corrected_value(blend, ray.at(*grazing + 1e-4)), 1, 1e-4); }
-        continue;
-      }
+    const auto expected = first_hit(one, ray), found = first_hit(other, ray);
+    if (expected && found) {
       EXPECT_NEAR(corrected_value(blend, ray.at(*found)), 1, 2e-5);
       hits += std::fabs(*found - *expected) < 1e-5;
+    } else if (const auto grazing = expected ? expected : found) {
+      EXPECT_NEAR(corrected_value(blend, ray.at(*grazing + 1e-4)), 1, 1e-4);
     }
   }
-  EXPECT_GT(hits, 1000);
-  for (std::size_t k = 0; k < 3; ++k) blocks[k] = tracers[k]->statistics().blocks;
-  EXPECT_GT(blocks[0], blocks[1]);
-  EXPECT_GT(blocks[1], blocks[2]);
+  return hits;
+}
+
+TEST(RaySpacing, LargerCellsHoldTheSameSurface) {
+  Random random(82);
+  const BlendField blend = random_scene(random, {4, contact_alpha(4)}, 9);
+  const auto all = tracer_of(blend, {}), few = tracer_of(blend, seen_from({0, 0, 9}, false)),
+             fewer = tracer_of(blend, seen_from({0, 0, 9}, true));
+  for (const BlendTracer* larger : {few.get(), fewer.get()}) EXPECT_GT(same_hits(random, blend, *all, *larger), 500);
+  EXPECT_GT(all->statistics().blocks, few->statistics().blocks);
+  EXPECT_GT(few->statistics().blocks, fewer->statistics().blocks);
+}
+
+// Rays are everywhere, so that cells are what they were, but all placements list the tiles.
+TEST(RaySpacing, ManyPlacementsHaveLargerTiles) {
+  Random random(84);
+  const BlendField blend = random_scene(random, {4, contact_alpha(4)}, 9);
+  const auto placed = [&](std::size_t times) {
+    return tracer_of(blend,
+                     RaySpacing{.views = std::vector<RaySpacing::View>(times, {.eye = {0, 0, 9}, .constant = 1e-9})});
+  };
+  const auto once = placed(1), often = placed(1000), very_often = placed(1'000'000);
+  EXPECT_GT(once->tile_count(), 4 * often->tile_count());
+  EXPECT_GE(often->tile_count(), very_often->tile_count());
+  for (const BlendTracer* tracer : {often.get(), very_often.get()})
+    EXPECT_GT(same_hits(random, blend, *once, *tracer), 500);
 }
 
 // Of threads far thinner than the gaps between rays cells may have many radii.
