@@ -19,8 +19,8 @@ struct RaySpacing {
   /// Each view's rays come once: there will be one sample a pixel.
   bool come_once = false;
 
-  /// How far apart the rays of all views together are in a cube, at most (of many thousand views: about): where many placements share a blend each of
-  /// its cells is met by the rays of all of them. 0 without views.
+  /// How far apart the rays of all views together are in a cube, at most (of many thousand views: about): where many
+  /// placements share a blend each of its cells is met by the rays of all of them. 0 without views.
   double in_cube(const Vec3d& center, double half) const;
   /// The half side below which a cell in that cube is hardly worth making; 0 without views.
   double least_cell(const Vec3d& center, double half) const;
