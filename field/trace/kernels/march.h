@@ -241,14 +241,16 @@ struct Marcher {
   }
 
   // Deep inside no gradient can bring the field below 1, and f falls at most as if all of it came from the nearest
-  // source: f(t + h) >= f(t) (1 + |h| / d)^-n. Where sums overflow they are known to be large, and on a source itself
-  // the ray goes on by what places in float are off, which no surface is nearer than.
+  // source: f(t + h) >= f(t) (1 + |h| / d)^-n. Sums overflow where d^-n does, even when the share of the source is as
+  // small as that of a segment of a few roundings: it is taken to be 1e-26. On a source itself the ray goes on by what
+  // places in float are off, which no surface is nearer than.
   float deep_step(const Sample& p) const {
-    constexpr float largest = 1e30F, least_step = 1e-6F;
-    const float f = p.s.f < largest ? p.s.f : largest;
+    constexpr float largest = 1e30F, if_overflown = 1e12F, least_step = 1e-6F;
+    const bool is_known = p.s.f < infinity;
+    const float f = is_known ? min_of(p.s.f, largest) : if_overflown;
     if (!(f > block.iso.critical)) return 0;
     const float step = 0.98F * p.distance * (inverse_root(block.iso.critical / f, block.degree) - 1);
-    return f < largest ? max_of(step, 0) : max_of(step, least_step);
+    return is_known && f < largest ? max_of(step, 0) : max_of(step, least_step);
   }
 
   // The largest certified step from p in direction `sign`, at most `limit`; 0 when none was found.
