@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 
+#include "field/base/huge_pages.h"
 #include "field/math/box3.h"
 #include "field/trace/ask_for.h"
 #include "field/trace/block_arena.h"
@@ -26,7 +27,7 @@ class Strands;
 
 /// Coordinates of the block: x = (p - center) / half. Its levels are made when the first ray needs them; safe to use
 /// from many threads.
-class alignas(64) Block {
+class alignas(64) Block : public InHugePages {
  public:
   struct Context {
     std::span<const Piece> pieces;  ///< in the order of the source tree

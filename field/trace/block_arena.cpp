@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <new>
 
-#include <sys/mman.h>
+#include "field/base/huge_pages.h"
 
 namespace marrow {
 namespace {
-constexpr std::size_t huge_page = std::size_t{1} << 21, chunk_bytes = 4 * huge_page;
+constexpr std::size_t chunk_bytes = 4 * huge_page;
 }  // namespace
 
 void BlockArena::Free::operator()(void* p) const { std::free(p); }
@@ -18,9 +17,7 @@ float* BlockArena::allocate(std::size_t float_count) {
   const std::lock_guard lock(mutex_);
   if (bytes > left_) {
     const std::size_t size = std::max(chunk_bytes, (bytes + huge_page - 1) / huge_page * huge_page);
-    Chunk chunk(std::aligned_alloc(huge_page, size));
-    if (!chunk) throw std::bad_alloc();
-    madvise(chunk.get(), size, MADV_HUGEPAGE);  // a hint: without huge pages all works, with more page faults
+    Chunk chunk(allocate_huge(size));
     next_ = static_cast<std::byte*>(chunk.get());
     left_ = size;
     total_ += size;

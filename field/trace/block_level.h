@@ -1,12 +1,13 @@
 // One of the two levels of a block.
 #pragma once
 
+#include "field/base/huge_pages.h"
 #include "field/trace/block_kernels.h"
 
 namespace marrow {
 
 /// With certified bounds of its difference from the exact field, over its cell.
-struct alignas(64) BlockLevel {
+struct alignas(64) BlockLevel : InHugePages {
   FieldLevel level;
   double f_error = 0, gradient_error = 0;
   double angle_error = 0;  ///< of level.angle

@@ -45,8 +45,10 @@ BlockLevel write_level(const Level& level, const std::optional<Level>& angle, Er
   const auto counted = [errors](double error) {
     return static_cast<float>(errors == Errors::Counted ? 1.0001 * error : 0);
   };
-  BlockLevel out{
-      .level = write_field(level, at), .f_error = level.far.f_error, .gradient_error = level.far.gradient_error};
+  BlockLevel out;
+  out.level = write_field(level, at);
+  out.f_error = level.far.f_error;
+  out.gradient_error = level.far.gradient_error;
   out.level.f_error = counted(out.f_error);
   out.level.g_error = counted(out.gradient_error);
   if (angle) {

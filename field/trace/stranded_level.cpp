@@ -78,10 +78,11 @@ BlockLevel write_stranded_level(const StrandedLevel& from, const Allocate& alloc
                                                                                       .count = static_cast<int>(count),
                                                                                       .far = far,
                                                                                       .axes = strand_axes()};
-  BlockLevel out{.level = write_field(from.level, at),
-                 .f_error = from.level.far.f_error,
-                 .gradient_error = from.level.far.gradient_error,
-                 .angle_error = seen.view.error};
+  BlockLevel out;
+  out.level = write_field(from.level, at);
+  out.f_error = from.level.far.f_error;
+  out.gradient_error = from.level.far.gradient_error;
+  out.angle_error = seen.view.error;
   out.level.strands = reference;
   return out;
 }

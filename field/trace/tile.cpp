@@ -24,7 +24,7 @@ std::uint64_t TileContent::occupied() const {
 Tile::Tile(const TilePlace& place, Surroundings coarse, const TileContent& content)
     : place_(place),
       content_(content),
-      blocks_(new Lazy<Block>[static_cast<std::size_t>(std::popcount(content.cells))]),
+      blocks_(static_cast<std::size_t>(std::popcount(content.cells)), &huge_pages()),
       occupied_(content.occupied()),
       coarse_(std::move(coarse)),
       children_(new Lazy<Tile>[static_cast<std::size_t>(std::popcount(content.tiles))]) {

@@ -6,7 +6,9 @@
 #include <bit>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
+#include "field/base/huge_pages.h"
 #include "field/math/box3.h"
 #include "field/trace/ask_for.h"
 #include "field/trace/divider.h"
@@ -45,7 +47,7 @@ struct TileContent {
 };
 
 /// Blocks of cells and smaller tiles are made when asked for.
-class alignas(64) Tile {
+class alignas(64) Tile : public InHugePages {
  public:
   /// `coarse`: the sources around it, as the divider sees them.
   Tile(const TilePlace&, Surroundings coarse, const TileContent&);
@@ -81,7 +83,7 @@ class alignas(64) Tile {
   TilePlace place_;
   TileContent content_;
   Box3 content_box_;
-  std::unique_ptr<Lazy<Block>[]> blocks_;
+  std::pmr::vector<Lazy<Block>> blocks_;
   mutable std::atomic<std::uint64_t> occupied_;
   Surroundings coarse_;
   Lazy<Surroundings> fine_;

@@ -55,7 +55,7 @@ Result<std::unique_ptr<EmbreeSurfaces>> EmbreeSurfaces::make(std::vector<PlacedS
   std::vector<PartsOfSolid> elements;
   for (const PlacedSolid& p : s->solids_) {
     s->extent_.include(p.solid->extent());
-    elements.push_back({p.solid.get(), p.object, whole_elements(*p.solid)});
+    elements.emplace_back(p.solid.get(), p.object, whole_elements(*p.solid));
   }
   auto whole = PartHierarchy::make(s->device_.get(), std::move(elements));
   if (!whole) return whole.why();
@@ -78,7 +78,7 @@ void EmbreeSurfaces::refine() const {
     if (division.parts + parts.size() > most_parts) parts = std::move(whole);
     division.add(parts);
     if (division.parts > many_parts && division.area > thin * undivided.area) return;
-    solids.push_back({p.solid.get(), p.object, std::move(parts)});
+    solids.emplace_back(p.solid.get(), p.object, parts);
   }
   if (division.is_like(division_)) return;
   division_ = division;

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "field/base/huge_pages.h"
 #include "field/base/result.h"
 #include "renderer/geometry/box_kernels.h"
 #include "renderer/geometry/embree_handles.h"
@@ -22,7 +23,10 @@ namespace marrow {
 struct PartsOfSolid {
   const Solid* solid = nullptr;
   ObjectId object;
-  std::vector<SolidPart> parts;
+  std::pmr::vector<SolidPart> parts;  ///< in huge pages
+
+  PartsOfSolid(const Solid* s, ObjectId o, const std::vector<SolidPart>& of)
+      : solid(s), object(o), parts(of.begin(), of.end(), &huge_pages()) {}
 };
 
 /// Safe to use from many threads.
