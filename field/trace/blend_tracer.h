@@ -36,11 +36,12 @@ struct TraceOptions {
   /// Aim for the displacement of the traced surface from the exact one, over the local radius. Error budgets come from
   /// it; TraceStatistics::largest_error tells what is certified.
   double tolerance = 1e-5;
-  /// From so much memory of blocks in the process on (1.25 GiB), what blocks hold is not kept but made for each thread
-  /// anew, to the same bits. A million segments seen from afar have half a million blocks that few rays meet.
-  std::size_t kept_bytes = std::size_t{5} << 28;
-  /// From there on up to so much more (0.75 GiB) goes to recipes (level_recipe.h), from which it is made much faster.
-  std::size_t recipe_bytes = std::size_t{3} << 28;
+  /// From so much memory of blocks in the process on, levels of blocks are not kept as kernels read them; empty: by the
+  /// number of pieces (precision.h). What is made of them again has the same bits.
+  std::optional<std::size_t> kept_bytes{};
+  /// Up to so much in all (2 GiB) they are kept as what they are made of (compact_level.h), behind that not at all. A
+  /// million segments seen from afar have half a million blocks that few rays meet.
+  std::size_t compact_bytes = std::size_t{1} << 31;
   /// Empty: by the number of primitives.
   std::optional<CellTreeSettings> cells{};
   /// To which far sources of the two levels are gathered, 4, 6 or 8; empty: by the number of pieces.

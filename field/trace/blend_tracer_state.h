@@ -76,13 +76,13 @@ struct BlendTracer::State {
                 kernels,
                 field.degree,
                 arena,
-                options.kept_bytes,
+                options.kept_bytes.value_or(kept_bytes_for(sources.pieces().size())),
                 range && field.alpha_per_skeleton ? &angle_sources : nullptr} {
     if (range && !field.alpha_per_skeleton) {
       strands.emplace(field, sources.pieces(), kernels);
       context.strands = &*strands;
     }
-    context.recipe_bytes = options.recipe_bytes;
+    context.compact_bytes = options.compact_bytes;
     for (std::size_t i = 0; i < tree.tile_count(); ++i) bounds.include(tree.tile_box(i));
   }
 

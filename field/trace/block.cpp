@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "field/trace/block_levels.h"
+#include "field/trace/compact_level.h"
 #include "field/trace/level_cache.h"
-#include "field/trace/level_recipe.h"
 #include "field/trace/serial.h"
 #include "field/trace/slot_layers.h"
 #include "field/trace/stranded_level.h"
@@ -52,9 +52,16 @@ LayerSpan layers_with(std::uint64_t slots, int axis) {
   return span;
 }
 
-LevelCache& coarse_cache() {
-  thread_local LevelCache cache;
-  return cache;
+LevelBuffer& scratch() {
+  thread_local LevelBuffer buffer;
+  return buffer;
+}
+
+// Of this thread. A packet asks for fewer at a time (kernels/packet_levels.h).
+using Levels = LevelCache<128>;
+Levels& levels(LevelKind kind) {
+  thread_local Levels coarse, fine;
+  return kind == LevelKind::Coarse ? coarse : fine;
 }
 
 template <class Memory>
@@ -66,6 +73,8 @@ Allocate in(Memory& memory) {
 
 Block::Block(const Context& context, const CellTree::Cell& cell)
     : cell_(cell),
+      serial_(next_serial()),
+      context_(context),
       view_{.find_surface = [](const void* owner,
                                int octant) { return static_cast<const Block*>(owner)->surface(octant); },
             .find_known_surface =
@@ -78,14 +87,22 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
             .make_fine = [](const void* owner) -> const FieldLevel& {
               return static_cast<const Block*>(owner)->fine().level;
             },
+            .kept_level = [](const void* owner, bool fine) -> const FieldLevel* {
+              const auto* const block = static_cast<const Block*>(owner);
+              const BlockLevel* const kept = (fine ? block->fine_ : block->coarse_).whole.peek();
+              return kept != nullptr ? &kept->level : nullptr;
+            },
+            .ask_for_level =
+                [](const void* owner, bool fine, bool rest) {
+                  const auto* const block = static_cast<const Block*>(owner);
+                  block->ask_for(fine ? block->fine_ : block->coarse_, rest);
+                },
             .owner = this,
             .degree = context.degree,
             .iso = context.iso.view(),
             .rows = context.iso.views().data(),
             .row_count = static_cast<int>(context.iso.views().size()),
-            .tables = context.iso.tables()},
-      context_(context),
-      serial_(next_serial()) {
+            .tables = context.iso.tables()} {
   if (context.strands != nullptr) {
     patches_ = std::make_unique<const SharePatches>();
     view_.parts = patches_->octants();
@@ -97,22 +114,17 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
     for (int octant = 0; octant < 8; ++octant)
       if (may_hold(context, coarse.level, octant_center({0, 0, 0}, 1, octant), 0.5)) octants_ |= 1U << octant;
   };
-  // Nothing is kept of a cell that turns out to be empty, as half of them do where strands are thin.
-  if (!have_recipes(context)) {
+  if (have_angles()) {
     find_octants(coarse());
-  } else if (BlockArena::bytes_of_all() < context.kept_bytes) {
-    thread_local LevelBuffer scratch;
-    const BlockLevel made = coarse_level(context, cell, in(scratch));
-    find_octants(made);
-    if (octants_ != 0)
-      coarse_.whole.get([&] { return std::make_unique<const BlockLevel>(copy_of(made, in(context.arena))); });
-  } else {
-    std::vector<PieceRule> rules;
-    const BlockLevel& made = coarse_cache().get(
-        serial_, [&](LevelBuffer& buffer) { return coarse_level(context, cell, in(buffer), &rules); });
-    find_octants(made);
-    if (octants_ != 0) keep_recipe(coarse_, made, rules);
+    return;
   }
+  // Nothing is kept of a cell that turns out to be empty, as half of them do where strands are thin.
+  const CompactLevel& made = compact_level(LevelKind::Coarse, context, cell, in(scratch()));
+  const auto expand = [&](auto& memory) { return expanded(made, context.kernels, in(memory)); };
+  find_octants(levels(LevelKind::Coarse).get(serial_, expand));
+  if (octants_ == 0) return;
+  if (has_room()) coarse_.whole.get([&] { return std::make_unique<const BlockLevel>(expand(context.arena)); });
+  else keep(coarse_, made);
 }
 
 // Whoever asks first finds the same.
@@ -134,7 +146,7 @@ unsigned Block::known_surface(std::uint64_t (&octants)[8]) const {
 }
 
 const SharePart& Block::part(int path) const {
-  thread_local LevelCache cache;
+  thread_local LevelCache<1024> cache;
   return patches_->at(path, context_.kernels, context_.degree, [&]() -> const BlockLevel& {
     return cache.get(serial_, [&](LevelBuffer& buffer) {
       return write_stranded_level(make_stranded_level(context_, cell_), in(buffer));
@@ -172,44 +184,47 @@ Box3 Block::surface_box() const {
                                                                                                    cell_.half);
 }
 
-Block::Stored::Stored() = default;
-Block::Stored::~Stored() = default;
-
-// Whole as long as there is memory, then as a recipe, then not at all.
-template <class Make>
-const BlockLevel& Block::level(const Stored& stored, LevelCache& cache, const Make& make) const {
+const BlockLevel& Block::level(LevelKind kind, const Stored& stored) const {
   if (const BlockLevel* ready = stored.whole.peek()) return *ready;
-  if (BlockArena::bytes_of_all() >= context_.kept_bytes)
-    return cache.get(serial_, [&](LevelBuffer& buffer) { return made_again(stored, make, buffer); });
-  return stored.whole.get([&] { return std::make_unique<const BlockLevel>(make(in(context_.arena), nullptr)); });
+  if (!has_room())
+    return levels(kind).get(serial_, [&](LevelBuffer& buffer) { return made_again(kind, stored, in(buffer)); });
+  return stored.whole.get(
+      [&] { return std::make_unique<const BlockLevel>(made_again(kind, stored, in(context_.arena))); });
 }
 
-template <class Make>
-BlockLevel Block::made_again(const Stored& stored, const Make& make, LevelBuffer& buffer) const {
-  if (const LevelRecipe* recipe = stored.recipe.peek()) return level_from(*recipe, context_, cell_, in(buffer));
-  if (!have_recipes(context_)) return make(in(buffer), nullptr);
-  std::vector<PieceRule> rules;
-  const BlockLevel level = make(in(buffer), &rules);
-  keep_recipe(stored, level, rules);
-  return level;
+BlockLevel Block::made_again(LevelKind kind, const Stored& stored, const Allocate& allocate) const {
+  if (const CompactLevel* kept = stored.compact.load(std::memory_order_acquire))
+    return expanded(*kept, context_.kernels, allocate);
+  if (have_angles()) return level_with_angles(kind, context_, cell_, allocate);
+  const CompactLevel& made = compact_level(kind, context_, cell_, in(scratch()));
+  if (!has_room()) keep(stored, made);
+  return expanded(made, context_.kernels, allocate);
 }
 
-void Block::keep_recipe(const Stored& stored, const BlockLevel& level, std::span<const PieceRule> rules) const {
-  if (BlockArena::bytes_of_all() >= context_.kept_bytes + context_.recipe_bytes) return;
-  stored.recipe.get([&] { return std::make_unique<const LevelRecipe>(recipe_of(level, rules, in(context_.arena))); });
+// Two threads may both have made it; the arena has room for the one that nobody finds.
+void Block::keep(const Stored& stored, const CompactLevel& made) const {
+  if (!has_compact_room()) return;
+  const CompactLevel* before = nullptr;
+  stored.compact.compare_exchange_strong(before, &copy_of(made, in(context_.arena)), std::memory_order_acq_rel);
 }
 
-const BlockLevel& Block::coarse() const {
-  return level(coarse_, coarse_cache(), [&](const Allocate& allocate, std::vector<PieceRule>* rules) {
-    return coarse_level(context_, cell_, allocate, rules);
-  });
+const BlockLevel& Block::coarse() const { return level(LevelKind::Coarse, coarse_); }
+const BlockLevel& Block::fine() const { return level(LevelKind::Fine, fine_); }
+
+const BlockLevel* Block::fine_if_kept() const {
+  if (const BlockLevel* whole = fine_.whole.peek()) return whole;
+  const CompactLevel* const kept = fine_.compact.load(std::memory_order_acquire);
+  return kept != nullptr ? &kept->level : nullptr;
 }
 
-const BlockLevel& Block::fine() const {
-  thread_local LevelCache cache;
-  return level(fine_, cache, [&](const Allocate& allocate, std::vector<PieceRule>* rules) {
-    return fine_level(context_, cell_, allocate, rules);
-  });
+// Its first lines; or what they tell of.
+void Block::ask_for(const Stored& stored, bool rest) const {
+  constexpr std::size_t first_lines = 4;
+  const CompactLevel* const kept = stored.compact.load(std::memory_order_acquire);
+  if (kept == nullptr) return;
+  if (!rest) return ask_for_lines<first_lines>(kept);
+  for (std::size_t line = first_lines; line < kept->lines; ++line)
+    ask_for_lines<1>(reinterpret_cast<const char*>(kept) + 64 * line);
 }
 
 }  // namespace marrow

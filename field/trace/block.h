@@ -15,14 +15,13 @@
 #include "field/trace/block_level.h"
 #include "field/trace/cell_tree.h"
 #include "field/trace/lazy.h"
+#include "field/trace/level_layout.h"
 #include "field/trace/share_patch.h"
 
 namespace marrow {
 
-class LevelBuffer;
-class LevelCache;
-struct LevelRecipe;
-struct PieceRule;
+struct CompactLevel;
+enum class LevelKind;
 class Strands;
 
 /// Coordinates of the block: x = (p - center) / half. Its levels are made when the first ray needs them; safe to use
@@ -42,7 +41,7 @@ class alignas(64) Block : public InHugePages {
     std::size_t kept_bytes;             ///< see TraceOptions
     const SourceTree* angle = nullptr;  ///< of angle_field.h, where skeletons have an angle each
     const Strands* strands = nullptr;   ///< where their directions give the angle
-    std::size_t recipe_bytes = 0;       ///< see TraceOptions
+    std::size_t compact_bytes = 0;      ///< see TraceOptions
   };
   /// The context must outlive the block.
   Block(const Context&, const CellTree::Cell&);
@@ -65,25 +64,26 @@ class alignas(64) Block : public InHugePages {
   /// for the same one. They are the same in either case.
   const BlockLevel& coarse() const;
   const BlockLevel& fine() const;
-  const BlockLevel* fine_if_kept() const { return fine_.whole.peek(); }
+  /// What is kept of it, perhaps without sources; null if nothing is.
+  const BlockLevel* fine_if_kept() const;
   /// Where directions give the angle, else null.
   const SharePatches* patches() const { return patches_.get(); }
   /// The share of the range of angles at a place of the block, where directions give it.
   ShareAt share(const Vec3d& place) const;
 
  private:
-  // One of the two levels.
+  // One of the two levels: whole as long as there is memory, then as what it is made of, then not at all.
   struct Stored {
     Lazy<BlockLevel> whole;
-    Lazy<LevelRecipe> recipe;
-    Stored();
-    ~Stored();
+    mutable std::atomic<const CompactLevel*> compact = nullptr;  // in the arena
   };
-  template <class Make>
-  const BlockLevel& level(const Stored&, LevelCache&, const Make&) const;
-  template <class Make>
-  BlockLevel made_again(const Stored&, const Make&, LevelBuffer&) const;
-  void keep_recipe(const Stored&, const BlockLevel&, std::span<const PieceRule>) const;
+  bool have_angles() const { return context_.angle != nullptr; }
+  bool has_room() const { return BlockArena::bytes_of_all() < context_.kept_bytes; }
+  bool has_compact_room() const { return BlockArena::bytes_of_all() < context_.compact_bytes; }
+  const BlockLevel& level(LevelKind, const Stored&) const;
+  BlockLevel made_again(LevelKind, const Stored&, const Allocate&) const;
+  void keep(const Stored&, const CompactLevel&) const;
+  void ask_for(const Stored&, bool rest) const;
   std::uint64_t surface(int octant) const;
   unsigned known_surface(std::uint64_t (&octants)[8]) const;
   const SharePart& part(int path) const;
@@ -93,10 +93,10 @@ class alignas(64) Block : public InHugePages {
   unsigned octants_ = 0;                                 // a bit for each that may hold surface
   mutable std::atomic<std::uint8_t> surface_known_ = 0;  // a bit for each octant
   Stored coarse_, fine_;
+  std::uint64_t serial_;
+  const Context& context_;
   mutable std::array<std::atomic<std::uint64_t>, 8> surface_{};
   BlockView view_;
-  const Context& context_;
-  std::uint64_t serial_;
   std::unique_ptr<const SharePatches> patches_;
 };
 

@@ -29,6 +29,22 @@ inline constexpr int tensor_floats = 48;  ///< 45 components of a tensor of degr
 inline constexpr int most_strands = 512;  ///< that a block lists
 inline constexpr int quadratic_monomials = 10;  ///< 1 x y z xx yy zz xy xz yz
 
+/// A part of a curve, tapered linearly, for which the rule of so many nodes stands. Node i of the rule, at s of the
+/// part with weight w, is a source of radius tau = radius + taper s and share w unit / tau.
+struct CurvePiece {
+  float from[3], along[3];
+  float radius, taper;
+  float unit;  ///< its length over N of the kernel
+  int nodes;   ///< 1 to most_rule_nodes
+};
+
+inline constexpr int most_rule_nodes = 16;
+/// Gauss-Legendre rules by their number of nodes, positions in (0, 1), weights that add up to 1, and zeros behind them
+/// up to sixteen; each twice, one behind the other.
+struct NodeTable {
+  alignas(64) float positions[most_rule_nodes + 1][2 * lanes], weights[most_rule_nodes + 1][2 * lanes];
+};
+
 /// The strands of a fine level, whose directions give the angle (strands.h).
 struct StrandLevel {
   const float* directions = nullptr;  ///< of each source of the curve groups: x[16] y[16] z[16]
@@ -65,9 +81,13 @@ struct BlockView {
   std::uint64_t (*find_surface)(const void* owner, int octant) = nullptr;
   /// The same of all octants of which it is known by now, a bit for each of these; 0 of the others.
   unsigned (*find_known_surface)(const void* owner, std::uint64_t (&octants)[8]) = nullptr;
-  /// Made when they are needed; good until the same is asked of another block.
+  /// Made when they are needed; one that is not kept is good until the same is asked of another block.
   const FieldLevel& (*make_coarse)(const void* owner) = nullptr;
   const FieldLevel& (*make_fine)(const void* owner) = nullptr;
+  /// The level if it is kept; else null.
+  const FieldLevel* (*kept_level)(const void* owner, bool fine) = nullptr;
+  /// Asks memory for the first lines of what is kept of a level, or for the rest, when these have come.
+  void (*ask_for_level)(const void* owner, bool fine, bool rest) = nullptr;
   const void* owner = nullptr;
   int degree = 4;
   IsoCurve::View iso;
@@ -306,6 +326,8 @@ struct BlockKernels {
   void (*place_margins)(const SurfaceRule&, int count, SurfaceLanes&);
   /// Through the slots of a set, in coordinates of the cube of 4 x 4 x 4 slots, [-1, 1]^3.
   void (*walk)(std::uint64_t slots, const LocalRay&, float t0, float t1, Walk&);
+  /// Writes the sources of curves, group after group; unused lanes of the last one as SourceGroups leaves them.
+  void (*write_nodes)(const CurvePiece*, int count, const NodeTable&, float* groups);
   CubeBounds (*cube_bounds)(const FieldLevel&, int degree, const float center[3], float half);
   /// Moments of groups of inverted sources (y, field at the origin, tau), without the constants of MomentTable.
   void (*far_moments)(const float* groups, int count, int far_degree, float* f, float* potential);

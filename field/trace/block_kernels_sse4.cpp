@@ -42,6 +42,7 @@ namespace {
 #include "field/trace/kernels/walk.h"
 #include "field/trace/kernels/points.h"
 #include "field/trace/kernels/surface_starts.h"
+#include "field/trace/kernels/nodes.h"
 #include "field/trace/kernels/cube.h"
 #include "field/trace/kernels/moments.h"
 #include "field/trace/kernels/split.h"
@@ -49,9 +50,9 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root,    enter_cell,    roots_between,  point_fields, surface_starts,
-                                        place_margins, walk,          cube_bounds,    far_moments,  far_split,
-                                        octant_bounds, strand_shares, strand_samples, add_strand};
+  static constexpr BlockKernels kernels{first_root,    enter_cell,    roots_between, point_fields,   surface_starts,
+                                        place_margins, walk,          write_nodes,   cube_bounds,    far_moments,
+                                        far_split,     octant_bounds, strand_shares, strand_samples, add_strand};
   return kernels;
 }
 

@@ -1,7 +1,7 @@
 #include "field/trace/block_levels.h"
 
+#include <algorithm>
 #include <new>
-#include <optional>
 #include <span>
 #include <utility>
 
@@ -11,71 +11,90 @@
 namespace marrow {
 namespace {
 
-Level make_level(const Block::Context& context, const NearFar& precision, std::span<const Piece> pieces,
-                 const Surroundings& around, const CellTree::Cell& cell, const Economy& economy,
-                 std::vector<PieceRule>* rules = nullptr) {
-  SourceEmitter emitter(context.cutter, precision, context.degree, cell.center, cell.half);
-  for (const SourceRef ref : around.near) emitter.emit(pieces[ref.index()], ref.index(), rules);
-  Level level{std::move(emitter.curves), std::move(emitter.points), economized(around.far, economy)};
-  level.far.f_error += emitter.f_error;
-  level.far.gradient_error += emitter.gradient_error;
+bool is_coarse(LevelKind kind) { return kind == LevelKind::Coarse; }
+const NearFar& precision_of(LevelKind kind, const Block::Context& c) { return is_coarse(kind) ? c.coarse : c.fine; }
+Economy economy_of(LevelKind kind, const Block::Context& context) {
+  return is_coarse(kind) ? coarse_economy : fine_economy(context.fine);
+}
+Surroundings surroundings(LevelKind kind, const Block::Context& context, const CellTree::Cell& cell) {
+  return is_coarse(kind) ? context.tree.coarse_surroundings(cell) : context.tree.surroundings(cell);
+}
+
+// Where no rule is certified, beside the point of a cone, an error may be infinite.
+float counted(LevelKind kind, double error) { return static_cast<float>(is_coarse(kind) ? 1.0001 * error : 0); }
+
+void count_errors(LevelKind kind, BlockLevel& level) {
+  level.level.f_error = counted(kind, level.f_error);
+  level.level.g_error = counted(kind, level.gradient_error);
+}
+
+void add_errors(const RuleFinder& rules, LevelPolynomials& far) {
+  far.f_error += rules.f_error;
+  far.gradient_error += rules.gradient_error;
+}
+
+Level make_level(LevelKind kind, const Block::Context& context, std::span<const Piece> pieces,
+                 const Surroundings& around, const CellTree::Cell& cell) {
+  SourceEmitter emitter(context.cutter, precision_of(kind, context), cell.center, cell.half);
+  for (const SourceRef ref : around.near) emitter.emit(pieces[ref.index()]);
+  Level level{std::move(emitter.curves), std::move(emitter.points), economized(around.far, economy_of(kind, context))};
+  add_errors(emitter.rules, level.far);
   return level;
 }
 
-// The field of angles, at the same errors, from its own tree; nothing where alpha is constant.
-std::optional<Level> make_angle_level(const Block::Context& context, const NearFar& precision,
-                                      const CellTree::Cell& cell, const Economy& economy) {
-  if (context.angle == nullptr) return {};
-  constexpr double open_all = NearFar::open_all;
+// The field of angles, at the same errors, from its own tree.
+Level make_angle_level(LevelKind kind, const Block::Context& context, const CellTree::Cell& cell) {
   Surroundings s;
-  s.near = precision.split(*context.angle, context.angle->roots(), cell.center, cell.half, open_all, s.far);
-  return make_level(context, precision, context.angle->pieces(), s, cell, economy);
-}
-
-// Whether the errors count wherever "outside" is to be proved, or are only stated.
-enum class Errors { Counted, Stated };
-
-// In one piece of memory: the level, then the field of angles, then what refers to it.
-BlockLevel write_level(const Level& level, const std::optional<Level>& angle, Errors errors, const Allocate& allocate) {
-  const auto floats_of = [](const Level& l) { return (l.floats() + lanes - 1) / lanes * lanes; };
-  constexpr std::size_t reference_floats = (sizeof(FieldLevel) + sizeof(float) - 1) / sizeof(float);
-  const std::size_t own = floats_of(level), second = angle ? floats_of(*angle) : 0;
-  float* const at = allocate(own + second + (angle ? reference_floats : 0));
-  // Where no rule is certified, beside the point of a cone, an error may be infinite.
-  const auto counted = [errors](double error) {
-    return static_cast<float>(errors == Errors::Counted ? 1.0001 * error : 0);
-  };
-  BlockLevel out;
-  out.level = write_field(level, at);
-  out.f_error = level.far.f_error;
-  out.gradient_error = level.far.gradient_error;
-  out.level.f_error = counted(out.f_error);
-  out.level.g_error = counted(out.gradient_error);
-  if (angle) {
-    auto* const reference = new (at + own + second) FieldLevel(write_field(*angle, at + own));
-    out.angle_error = angle->far.f_error;
-    reference->f_error = counted(out.angle_error);
-    out.level.angle = reference;
-  }
-  return out;
+  s.near = precision_of(kind, context)
+               .split(*context.angle, context.angle->roots(), cell.center, cell.half, NearFar::open_all, s.far);
+  return make_level(kind, context, context.angle->pieces(), s, cell);
 }
 
 }  // namespace
 
-BlockLevel coarse_level(const Block::Context& context, const CellTree::Cell& cell, const Allocate& allocate,
-                        std::vector<PieceRule>* rules) {
-  const NearFar& coarse = context.coarse;
-  const Surroundings around = context.tree.coarse_surroundings(cell);
-  return write_level(make_level(context, coarse, context.pieces, around, cell, coarse_economy, rules),
-                     make_angle_level(context, coarse, cell, coarse_economy), Errors::Counted, allocate);
+const CompactLevel& compact_level(LevelKind kind, const Block::Context& context, const CellTree::Cell& cell,
+                                  const Allocate& allocate) {
+  const Surroundings around = surroundings(kind, context, cell);
+  CompactParts parts{.curves = {}, .points = {}, .far = economized(around.far, economy_of(kind, context))};
+  RuleFinder rules(context.cutter, precision_of(kind, context), cell.center, cell.half);
+  for (const SourceRef ref : around.near) {
+    const Piece& piece = context.pieces[ref.index()];
+    if (piece.is_point()) {
+      add_nodes(piece, 1, cell.center, cell.half, context.degree, parts.points);
+      continue;
+    }
+    rules.find(piece, [&](const Piece& part, int nodes) {
+      parts.curves.push_back(curve_piece(part, nodes, cell.center, cell.half, context.degree));
+    });
+  }
+  // Rules of the same size follow each other, so that processors foresee where groups of nodes are full.
+  std::stable_sort(parts.curves.begin(), parts.curves.end(),
+                   [](const CurvePiece& a, const CurvePiece& b) { return a.nodes > b.nodes; });
+  add_errors(rules, parts.far);
+  CompactLevel& made = write_compact(parts, allocate);
+  count_errors(kind, made.level);
+  return made;
 }
 
-BlockLevel fine_level(const Block::Context& context, const CellTree::Cell& cell, const Allocate& allocate,
-                      std::vector<PieceRule>* rules) {
-  const NearFar& fine = context.fine;
-  const Surroundings around = context.tree.surroundings(cell);
-  return write_level(make_level(context, fine, context.pieces, around, cell, fine_economy(fine), rules),
-                     make_angle_level(context, fine, cell, fine_economy(fine)), Errors::Stated, allocate);
+// In one piece of memory: the level, then the field of angles, then what refers to it.
+BlockLevel level_with_angles(LevelKind kind, const Block::Context& context, const CellTree::Cell& cell,
+                             const Allocate& allocate) {
+  const Level level = make_level(kind, context, context.pieces, surroundings(kind, context, cell), cell),
+              angle = make_angle_level(kind, context, cell);
+  const auto floats_of = [](const Level& l) { return (l.floats() + lanes - 1) / lanes * lanes; };
+  constexpr std::size_t reference_floats = (sizeof(FieldLevel) + sizeof(float) - 1) / sizeof(float);
+  const std::size_t own = floats_of(level), second = floats_of(angle);
+  float* const at = allocate(own + second + reference_floats);
+  BlockLevel out;
+  out.level = write_field(level, at);
+  out.f_error = level.far.f_error;
+  out.gradient_error = level.far.gradient_error;
+  out.angle_error = angle.far.f_error;
+  count_errors(kind, out);
+  auto* const reference = new (at + own + second) FieldLevel(write_field(angle, at + own));
+  reference->f_error = counted(kind, angle.far.f_error);
+  out.level.angle = reference;
+  return out;
 }
 
 }  // namespace marrow

@@ -1,20 +1,19 @@
 // The two levels of a block, from the sources around it.
 #pragma once
 
-#include <vector>
-
 #include "field/trace/block.h"
+#include "field/trace/compact_level.h"
 #include "field/trace/level_layout.h"
-#include "field/trace/source_emitter.h"
 
 namespace marrow {
 
-/// `rules`, when not null: grow by those that made the sources.
-/// Its errors count wherever "outside" is to be proved.
-BlockLevel coarse_level(const Block::Context&, const CellTree::Cell&, const Allocate&,
-                        std::vector<PieceRule>* rules = nullptr);
-/// Its errors are only stated: it is the field that is traced.
-BlockLevel fine_level(const Block::Context&, const CellTree::Cell&, const Allocate&,
-                      std::vector<PieceRule>* rules = nullptr);
+/// The coarse level, whose errors count wherever "outside" is to be proved; and the fine one, whose errors are only
+/// stated: it is the field that is traced.
+enum class LevelKind { Coarse, Fine };
+
+/// Where skeletons have no angle each.
+const CompactLevel& compact_level(LevelKind, const Block::Context&, const CellTree::Cell&, const Allocate&);
+/// With the field of angles.
+BlockLevel level_with_angles(LevelKind, const Block::Context&, const CellTree::Cell&, const Allocate&);
 
 }  // namespace marrow

@@ -31,19 +31,22 @@ class LevelBuffer {
   std::size_t capacity_ = 0;
 };
 
-/// For one thread. What it returns is good until this thread asks again.
+/// For one thread: the `Count` levels that it has made last. What it returns is good until this thread asks again.
+template <std::size_t Count>
 class LevelCache {
  public:
   /// `make(buffer)` returns a BlockLevel that lies in the buffer. `block` is the serial number of the block: the
   /// address of one that is gone may soon be that of another.
   template <class Make>
   const BlockLevel& get(std::uint64_t block, const Make& make) {
-    Entry& entry = entries_[block * 0x9e3779b97f4a7c15U >> shift];
-    if (entry.block != block) {
-      entry.block = 0;
-      entry.level = make(entry.buffer);
-      entry.block = block;
-    }
+    std::uint16_t& place = places_[block * 0x9e3779b97f4a7c15U >> shift];
+    if (entries_[place].block == block) return entries_[place].level;
+    place = next_;
+    next_ = static_cast<std::uint16_t>((next_ + 1U) % Count);
+    Entry& entry = entries_[place];
+    entry.block = 0;
+    entry.level = make(entry.buffer);
+    entry.block = block;
     return entry.level;
   }
 
@@ -54,7 +57,9 @@ class LevelCache {
     LevelBuffer buffer;
     BlockLevel level;
   };
-  std::array<Entry, std::size_t{1} << bits> entries_;
+  std::array<Entry, Count> entries_;
+  std::array<std::uint16_t, std::size_t{1} << bits> places_{};  // where a block may be, by its number
+  std::uint16_t next_ = 0;
 };
 
 }  // namespace marrow

@@ -7,11 +7,6 @@
 namespace marrow {
 namespace {
 
-void write_far(const LevelPolynomials& far, float* out) {
-  for (const auto& monomial : far.coefficients)
-    for (const double c : monomial) *out++ = static_cast<float>(c);
-}
-
 // The largest first derivative and half of the largest second one along any line in the cube, of f and of G. A monomial
 // in [-1, 1]^3 has a gradient of at most its degree. Its second derivative along a unit vector e is e.A e, |A_ij| at
 // most the sum over monomials of their |second derivatives|, and the largest eigenvalue of a symmetric matrix is at
@@ -40,22 +35,30 @@ struct FarRange {
 
 }  // namespace
 
+FieldLevel write_far(const LevelPolynomials& from, float* far) {
+  float* out = far;
+  for (const auto& monomial : from.coefficients)
+    for (const double c : monomial) *out++ = static_cast<float>(c);
+  const FarRange range(far, from.coefficients.size());
+  FieldLevel level;
+  level.far_degree = from.degree;
+  level.far = far;
+  level.far_slope = range.slope[0];
+  level.far_g_slope = FarRange::length(range.slope);
+  level.far_bend = range.bend[0];
+  level.far_g_bend = FarRange::length(range.bend);
+  return level;
+}
+
 FieldLevel write_field(const Level& level, float* sources) {
   const auto curve_floats = static_cast<std::size_t>(level.curves.group_count() * floats_per_group);
-  float* const far = sources + level.source_floats();
   std::copy_n(level.curves.data(), curve_floats, sources);
   std::copy_n(level.points.data(), level.source_floats() - curve_floats, sources + curve_floats);
-  write_far(level.far, far);
-  const FarRange range(far, level.far.coefficients.size());
-  return {.sources = sources,
-          .curve_groups = level.curves.group_count(),
-          .point_groups = level.points.group_count(),
-          .far_degree = level.far.degree,
-          .far = far,
-          .far_slope = range.slope[0],
-          .far_g_slope = FarRange::length(range.slope),
-          .far_bend = range.bend[0],
-          .far_g_bend = FarRange::length(range.bend)};
+  FieldLevel out = write_far(level.far, sources + level.source_floats());
+  out.sources = sources;
+  out.curve_groups = level.curves.group_count();
+  out.point_groups = level.points.group_count();
+  return out;
 }
 
 }  // namespace marrow

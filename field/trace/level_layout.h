@@ -25,5 +25,7 @@ struct Level {
 
 /// Writes Level::floats() numbers from `sources` on, which is 64-byte aligned. The errors of the result are left at 0.
 FieldLevel write_field(const Level&, float* sources);
+/// Writes the coefficients alone, 4 for each monomial; the result has no sources.
+FieldLevel write_far(const LevelPolynomials&, float* far);
 
 }  // namespace marrow

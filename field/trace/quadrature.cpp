@@ -27,6 +27,22 @@ GaussNodes gauss_legendre(int count) {
   return rules[static_cast<std::size_t>(count - 1)];
 }
 
+const NodeTable& node_table() {
+  static const NodeTable table = [] {
+    NodeTable t{};
+    for (int count = 1; count <= max_gauss_nodes; ++count) {
+      const GaussNodes rule = gauss_legendre(count);
+      for (std::size_t i = 0; i < rule.positions.size(); ++i)
+        for (const std::size_t copy : {i, i + lanes}) {
+          t.positions[count][copy] = static_cast<float>(rule.positions[i]);
+          t.weights[count][copy] = static_cast<float>(rule.weights[i]);
+        }
+    }
+    return t;
+  }();
+  return table;
+}
+
 GaussError::GaussError(int degree) : degree_(degree), close_(&RuleErrors::of(degree)) {
   // c_m = (m!)^4 / ((2m+1) ((2m)!)^2) = 1 / ((2m+1) binom(2m, m)^2)
   for (int m = 1; m <= max_gauss_nodes; ++m) {

@@ -4,11 +4,13 @@
 #include <array>
 #include <span>
 
+#include "field/trace/block_kernels.h"
 #include "field/trace/rule_errors.h"
 
 namespace marrow {
 
 inline constexpr int max_gauss_nodes = RuleErrors::most_nodes;
+static_assert(max_gauss_nodes == most_rule_nodes);
 
 /// Nodes in (0, 1); the weights sum to 1.
 struct GaussNodes {
@@ -17,6 +19,9 @@ struct GaussNodes {
 
 /// The rule with `count` nodes, 1 <= count <= max_gauss_nodes.
 GaussNodes gauss_legendre(int count);
+
+/// All of them, as kernels read them.
+const NodeTable& node_table();
 
 /// Bounds the error of Gauss-Legendre quadrature for the integrals of one straight piece,
 ///   f = 1/N int tau^(n-1) d^-n ds   and   grad_S f = -n/N int tau^n (p-q) d^-(n+2) ds,

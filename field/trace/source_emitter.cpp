@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "field/math/elementary.h"
+
 namespace marrow {
 namespace {
 
@@ -18,56 +20,54 @@ double separation(const Box3& a, const Box3& b) {
 
 }  // namespace
 
-SourceEmitter::SourceEmitter(const PieceCutter& cutter, const NearFar& precision, int degree, const Vec3d& center,
-                             double half)
-    : cutter_(cutter), precision_(precision), degree_(degree), center_(center), half_(half) {
+RuleFinder::RuleFinder(const PieceCutter& cutter, const NearFar& precision, const Vec3d& center, double half)
+    : cutter_(cutter), precision_(precision), center_(center), half_(half) {
   const Vec3d h{half, half, half};
   box_ = {center - h, center + h};
 }
 
 // Cut in halves until a rule is certified at the distance from which the field matters: nearer than
 // inside_distance the surface cannot be. The depth ends where a part is a thousandth of its piece.
-void SourceEmitter::emit(const Piece& whole, std::uint32_t index, std::vector<PieceRule>* rules) {
-  if (whole.is_point()) {
-    add_nodes(whole, 1, center_, half_, degree_, points);
-    if (rules != nullptr) rules->push_back({.piece = index, .position = 0, .halvings = 0, .nodes = 1});
-    return;
-  }
+void RuleFinder::for_each_part(const Piece& whole, Visit visit, const void* found) {
   struct Range {
     double begin, end;
-    int halvings, position;
   };
   Range stack[24];
   int count = 0;
-  stack[count++] = {0, 1, 0, 0};
+  stack[count++] = {0, 1};
   while (count > 0) {
     const Range r = stack[--count];
-    const Piece part = r.halvings == 0 ? whole : cutter_.part(whole, r.begin, r.end);
+    const Piece part = r.end - r.begin == 1 ? whole : cutter_.part(whole, r.begin, r.end);
     const double ball = distance(part, center_) - half_ * std::sqrt(3.0);
     const double d = std::max({ball, separation(part.box(), box_), whole.inside_distance});
     const auto rule = precision_.rule_for(part, d, 1);
     if (rule.within || r.end - r.begin < 1e-3) {
-      add_nodes(part, rule.nodes, center_, half_, degree_, curves);
+      visit(found, part, rule.nodes);
       f_error += rule.error.field;
       gradient_error += rule.error.gradient;
-      if (rules != nullptr)
-        rules->push_back({.piece = index,
-                          .position = static_cast<std::uint16_t>(r.position),
-                          .halvings = static_cast<std::uint8_t>(r.halvings),
-                          .nodes = static_cast<std::uint8_t>(rule.nodes)});
       continue;
     }
     const double mid = 0.5 * (r.begin + r.end);
-    stack[count++] = {mid, r.end, r.halvings + 1, 2 * r.position + 1};
-    stack[count++] = {r.begin, mid, r.halvings + 1, 2 * r.position};
+    stack[count++] = {mid, r.end};
+    stack[count++] = {r.begin, mid};
   }
 }
 
-// Halves of halves of [0, 1] are exact numbers.
-void SourceEmitter::emit_again(const Piece& whole, const PieceRule& rule) {
-  const double step = std::ldexp(1.0, -rule.halvings);
-  const Piece part = rule.halvings == 0 ? whole : cutter_.part(whole, rule.position * step, (rule.position + 1) * step);
-  add_nodes(part, rule.nodes, center_, half_, degree_, whole.is_point() ? points : curves);
+void SourceEmitter::emit(const Piece& piece) {
+  if (piece.is_point()) return add_nodes(piece, 1, center_, half_, degree_, points);
+  rules.find(piece, [&](const Piece& part, int nodes) { add_nodes(part, nodes, center_, half_, degree_, curves); });
+}
+
+CurvePiece curve_piece(const Piece& piece, int nodes, const Vec3d& center, double half, int degree) {
+  const double scale = 1 / half;
+  const Vec3d from = (piece.from - center) * scale, along = (piece.to - piece.from) * scale;
+  const auto single = [](double v) { return static_cast<float>(v); };
+  return {.from = {single(from.x), single(from.y), single(from.z)},
+          .along = {single(along.x), single(along.y), single(along.z)},
+          .radius = single(piece.radius_from * scale),
+          .taper = single((piece.radius_to - piece.radius_from) * scale),
+          .unit = single(piece.mass / integer_power(piece.radius, degree - 1) * scale),
+          .nodes = nodes};
 }
 
 }  // namespace marrow

@@ -1,7 +1,6 @@
 // Near pieces as quadrature nodes, in the coordinates of a block.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "field/math/box3.h"
@@ -11,32 +10,48 @@
 
 namespace marrow {
 
-/// The part of a piece from `position` to `position` + 1 over 2^halvings, and how many nodes stand for it.
-struct PieceRule {
-  std::uint32_t piece;
-  std::uint16_t position;
-  std::uint8_t halvings, nodes;
-};
-
-/// Adds what pieces are to the field of a cube, with certified errors.
-class SourceEmitter {
+/// Finds rules for what pieces are to the field of a cube, with certified errors.
+class RuleFinder {
  public:
-  SourceEmitter(const PieceCutter&, const NearFar& precision, int degree, const Vec3d& center, double half);
-  /// `rules`, when not null: grow by what is done with the piece, which goes by that index.
-  void emit(const Piece&, std::uint32_t index = 0, std::vector<PieceRule>* rules = nullptr);
-  /// The same sources, from one of these rules; their errors are not added again.
-  void emit_again(const Piece&, const PieceRule&);
+  RuleFinder(const PieceCutter&, const NearFar& precision, const Vec3d& center, double half);
+  /// Calls found(part, nodes) for the parts of a curve, first to last, and adds their errors.
+  template <class Found>
+  void find(const Piece& whole, const Found& found) {
+    for_each_part(
+        whole, [](const void* f, const Piece& part, int nodes) { (*static_cast<const Found*>(f))(part, nodes); },
+        &found);
+  }
 
-  SourceGroups curves, points;
   double f_error = 0, gradient_error = 0;
 
  private:
+  using Visit = void (*)(const void* found, const Piece& part, int nodes);
+  void for_each_part(const Piece& whole, Visit, const void* found);
+
   const PieceCutter& cutter_;
   const NearFar& precision_;
-  int degree_;
   Vec3d center_;
   double half_;
   Box3 box_;
 };
+
+/// Adds what pieces are to the field of a cube.
+class SourceEmitter {
+ public:
+  SourceEmitter(const PieceCutter& cutter, const NearFar& precision, const Vec3d& center, double half)
+      : rules(cutter, precision, center, half), degree_(precision.degree()), center_(center), half_(half) {}
+  void emit(const Piece&);
+
+  RuleFinder rules;  ///< with the errors
+  SourceGroups curves, points;
+
+ private:
+  int degree_;
+  Vec3d center_;
+  double half_;
+};
+
+/// A part of a curve in the coordinates of a cube.
+CurvePiece curve_piece(const Piece&, int nodes, const Vec3d& center, double half, int degree);
 
 }  // namespace marrow

@@ -23,7 +23,7 @@ StrandedLevel make_stranded_level(const Block::Context& context, const CellTree:
                     .seen = strands.around(*cell.tile, cell.center, cell.half, near),
                     .groups = {},
                     .directions = {}};
-  SourceEmitter emitter(context.cutter, context.fine, context.degree, cell.center, cell.half);
+  SourceEmitter emitter(context.cutter, context.fine, cell.center, cell.half);
   const auto emit = [&](std::uint32_t piece) {
     emitter.emit(context.pieces[piece]);
     const Vec3d u = strands.direction(piece);
@@ -48,8 +48,8 @@ StrandedLevel make_stranded_level(const Block::Context& context, const CellTree:
   for (const std::uint32_t piece : counted) emit(piece);
   out.level.curves = std::move(emitter.curves);
   out.level.points = std::move(emitter.points);
-  out.level.far.f_error += emitter.f_error;
-  out.level.far.gradient_error += emitter.gradient_error;
+  out.level.far.f_error += emitter.rules.f_error;
+  out.level.far.gradient_error += emitter.rules.gradient_error;
   return out;
 }
 

@@ -182,17 +182,17 @@ TEST(Block, LevelsThatAreNotKeptAreNeverThoseOfAnotherBlock) {
   }
 }
 
-// Another thread finds the recipe that the first one has left, and nothing else.
-TEST(Block, LevelsFromRecipesHaveTheSameBits) {
+// Another thread finds what the first one has left, and makes the levels of it.
+TEST(Block, CompactLevelsHaveTheBitsOfThoseThatAreKept) {
   Random random(64);
   int cut_pieces = 0, levels = 0;
   for (const Setting& s : settings()) {
     const Stage stage(random_scene(random, s, 8));
-    Block::Context recipes = stage.context;
-    recipes.kept_bytes = 0;
-    recipes.recipe_bytes = std::size_t{1} << 30;
+    Block::Context compact = stage.context;
+    compact.kept_bytes = 0;
+    compact.compact_bytes = std::size_t{1} << 30;
     for (std::size_t i = 0; i < stage.cells.size(); i += 1 + stage.cells.size() / 20) {
-      const Block kept = stage.block(i), told(recipes, stage.cells[i]);
+      const Block kept = stage.block(i), told(compact, stage.cells[i]);
       if (kept.empty()) continue;
       told.fine();
       for (const auto level : {&Block::coarse, &Block::fine}) {
@@ -210,7 +210,9 @@ TEST(Block, LevelsFromRecipesHaveTheSameBits) {
           ++levels;
         }).join();
       }
-      EXPECT_EQ(told.fine_if_kept(), nullptr);
+      ASSERT_NE(told.fine_if_kept(), nullptr);
+      EXPECT_EQ(told.fine_if_kept()->level.curve_groups, kept.fine().level.curve_groups);
+      EXPECT_EQ(told.fine_if_kept()->f_error, kept.fine().f_error);
     }
   }
   EXPECT_GT(levels, 50);

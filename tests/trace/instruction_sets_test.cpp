@@ -20,12 +20,12 @@ struct Variant {
   TraceOptions options;
 };
 
-// The sets, and the best of them without memory for blocks, or with memory for recipes alone.
+// The sets, and the best of them without memory for blocks, or with memory for what levels are made of alone.
 std::vector<Variant> variants_here(int far_degree) {
   std::vector<Variant> all;
   for (const std::string& name : sets_here()) all.push_back({name, {.instruction_set = name}});
-  all.push_back({"nothing kept", {.instruction_set = "", .kept_bytes = 0, .recipe_bytes = 0}});
-  all.push_back({"recipes", {.instruction_set = "", .kept_bytes = 0}});
+  all.push_back({"nothing kept", {.instruction_set = "", .kept_bytes = 0, .compact_bytes = 0}});
+  all.push_back({"compact", {.instruction_set = "", .kept_bytes = 0}});
   for (Variant& v : all) v.options.coarse_far_degree = far_degree;
   return all;
 }

@@ -208,7 +208,7 @@ TEST(PacketsWithoutKeptLevels, FindWhatSingleRaysFind) {
   Random random(4713);
   const BlendField blend = random_scene(random, {4, contact_alpha(4)}, 7);
   for (const std::string& set : sets_here()) {
-    auto made = BlendTracer::make(blend, {.instruction_set = set, .kept_bytes = 0, .recipe_bytes = 0});
+    auto made = BlendTracer::make(blend, {.instruction_set = set, .kept_bytes = 0, .compact_bytes = 0});
     ASSERT_TRUE(made);
     const BlendTracer& tracer = **made;
     for (int i = 0; i < 200; ++i) first_hit(tracer, any_ray(random, blend));

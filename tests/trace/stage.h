@@ -45,8 +45,7 @@ struct Stage {
              fine_far_degree_for(sources.pieces().size())),
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
         cells(tree.cells()),
-        context{sources.pieces(),         tree, cutter, coarse, fine, iso, kernels, field.degree, arena,
-                TraceOptions{}.kept_bytes} {}
+        context{sources.pieces(), tree, cutter, coarse, fine, iso, kernels, field.degree, arena, kept_bytes_for(0)} {}
 
   Block block(std::size_t cell) const { return Block(context, cells[cell]); }
   double value(const Vec3d& p) const { return corrected_value(field, p); }

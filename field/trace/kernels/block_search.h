@@ -74,7 +74,7 @@ class BlockSearch {
   LaneSet in_levels(LaneSet rays, const Find& search) {
     LaneSet found;
     while (!rays.empty()) {
-      const LaneSet ready = own_->levels.template make<Make>(cells_, cell_count_, rays_->cell, rays);
+      const LaneSet ready = own_->levels.template make<Make>(cells_, rays_->cell, rays);
       found |= search(ready);
       rays &= ~ready;
     }

@@ -1,0 +1,32 @@
+// What a level is made of: pieces and how many nodes stand for them, a third of the size of the nodes themselves.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "field/trace/block_kernels.h"
+#include "field/trace/block_level.h"
+#include "field/trace/level_layout.h"
+
+namespace marrow {
+
+/// What a level without angles of its own is made of, gathered.
+struct CompactParts {
+  std::vector<CurvePiece> curves;
+  SourceGroups points;
+  LevelPolynomials far;  ///< with the errors of the level
+};
+
+/// The same in one piece of memory, which owns itself: what leads to it begins it.
+struct CompactLevel {
+  BlockLevel level;  ///< all but the sources of curves
+  std::span<const CurvePiece> curves;
+  std::size_t lines = 0;  ///< of memory, of 64 bytes
+};
+
+CompactLevel& write_compact(const CompactParts&, const Allocate&);
+const CompactLevel& copy_of(const CompactLevel&, const Allocate&);
+/// The level with all its sources, in memory of its own.
+BlockLevel expanded(const CompactLevel&, const BlockKernels&, const Allocate&);
+
+}  // namespace marrow
