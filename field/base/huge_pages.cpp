@@ -1,6 +1,5 @@
 #include "field/base/huge_pages.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <mutex>

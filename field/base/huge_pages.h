@@ -1,7 +1,7 @@
 // Memory in huge pages, for what rays come to in no order.
 //
 // Tiles, blocks and parts of a picture are hundreds of thousands of small objects. In pages of 4 KB each visit has to
-// look up where its page is, which on virtual machines takes longer than all that is done with the object.
+// look up where its page is, which on some virtual machines takes a good part of the visit.
 #pragma once
 
 #include <cstddef>

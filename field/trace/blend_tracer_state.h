@@ -76,7 +76,7 @@ struct BlendTracer::State {
                 kernels,
                 field.degree,
                 arena,
-                options.kept_bytes.value_or(kept_bytes_for(sources.pieces().size())),
+                options.kept_bytes.value_or(kept_bytes_for(sources.pieces().size(), range && field.alpha_per_skeleton)),
                 range && field.alpha_per_skeleton ? &angle_sources : nullptr} {
     if (range && !field.alpha_per_skeleton) {
       strands.emplace(field, sources.pieces(), kernels);

@@ -1,6 +1,7 @@
 #include "field/trace/compact_level.h"
 
 #include <algorithm>
+#include <cstring>
 #include <memory>
 #include <new>
 
@@ -53,8 +54,8 @@ CompactLevel& write_compact(const CompactParts& parts, const Allocate& allocate)
 
 const CompactLevel& copy_of(const CompactLevel& from, const Allocate& allocate) {
   const auto* const old = reinterpret_cast<const float*>(&from);
-  float* const begin =
-      std::copy_n(old, from.lines * line_floats, allocate(from.lines * line_floats)) - from.lines * line_floats;
+  float* const begin = allocate(from.lines * line_floats);
+  std::memcpy(begin, &from, from.lines * line_floats * sizeof(float));
   const auto moved = [&](const float* p) { return begin + (p - old); };
   auto* const copy = new (begin) CompactLevel(from);
   copy->level.level.sources = moved(from.level.level.sources);

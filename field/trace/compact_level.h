@@ -17,14 +17,16 @@ struct CompactParts {
   LevelPolynomials far;  ///< with the errors of the level
 };
 
-/// The same in one piece of memory, which owns itself: what leads to it begins it.
+/// The same in one piece of memory, at whose beginning this stands; 64-byte aligned, freed with that memory.
 struct CompactLevel {
   BlockLevel level;  ///< all but the sources of curves
   std::span<const CurvePiece> curves;
   std::size_t lines = 0;  ///< of memory, of 64 bytes
 };
 
+/// Errors count as the level is told later: those of its FieldLevel are left at 0.
 CompactLevel& write_compact(const CompactParts&, const Allocate&);
+/// The same in other memory.
 const CompactLevel& copy_of(const CompactLevel&, const Allocate&);
 /// The level with all its sources, in memory of its own.
 BlockLevel expanded(const CompactLevel&, const BlockKernels&, const Allocate&);

@@ -17,8 +17,9 @@ inline constexpr std::size_t many_pieces = 4'000;
 /// sample of 10^6 strands takes 0.87 of the time so, their first frame 0.9; of 10^5 both the same, with two thirds of
 /// the memory; bounces of 10,000 hairs would take 1.05 to 1.12 times as long.
 inline constexpr std::size_t too_many_pieces = 100'000;
-inline std::size_t kept_bytes_for(std::size_t piece_count) {
-  return piece_count < too_many_pieces ? std::size_t{5} << 28 : 0;
+/// Where skeletons have an angle each there are no compact levels: what is not kept would be made from the beginning.
+inline std::size_t kept_bytes_for(std::size_t piece_count, bool have_angles) {
+  return piece_count < too_many_pieces || have_angles ? std::size_t{5} << 28 : 0;
 }
 
 /// Of the coarse level, over the local radius: large enough to shorten its lists to a few sources, small enough to

@@ -28,7 +28,7 @@ RuleFinder::RuleFinder(const PieceCutter& cutter, const NearFar& precision, cons
 
 // Cut in halves until a rule is certified at the distance from which the field matters: nearer than
 // inside_distance the surface cannot be. The depth ends where a part is a thousandth of its piece.
-void RuleFinder::for_each_part(const Piece& whole, Visit visit, const void* found) {
+void RuleFinder::find(const Piece& whole, const std::function<void(const Piece& part, int nodes)>& found) {
   struct Range {
     double begin, end;
   };
@@ -42,7 +42,7 @@ void RuleFinder::for_each_part(const Piece& whole, Visit visit, const void* foun
     const double d = std::max({ball, separation(part.box(), box_), whole.inside_distance});
     const auto rule = precision_.rule_for(part, d, 1);
     if (rule.within || r.end - r.begin < 1e-3) {
-      visit(found, part, rule.nodes);
+      found(part, rule.nodes);
       f_error += rule.error.field;
       gradient_error += rule.error.gradient;
       continue;

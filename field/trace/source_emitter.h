@@ -1,7 +1,7 @@
 // Near pieces as quadrature nodes, in the coordinates of a block.
 #pragma once
 
-#include <vector>
+#include <functional>
 
 #include "field/math/box3.h"
 #include "field/trace/near_far.h"
@@ -15,19 +15,11 @@ class RuleFinder {
  public:
   RuleFinder(const PieceCutter&, const NearFar& precision, const Vec3d& center, double half);
   /// Calls found(part, nodes) for the parts of a curve, first to last, and adds their errors.
-  template <class Found>
-  void find(const Piece& whole, const Found& found) {
-    for_each_part(
-        whole, [](const void* f, const Piece& part, int nodes) { (*static_cast<const Found*>(f))(part, nodes); },
-        &found);
-  }
+  void find(const Piece& whole, const std::function<void(const Piece& part, int nodes)>& found);
 
   double f_error = 0, gradient_error = 0;
 
  private:
-  using Visit = void (*)(const void* found, const Piece& part, int nodes);
-  void for_each_part(const Piece& whole, Visit, const void* found);
-
   const PieceCutter& cutter_;
   const NearFar& precision_;
   Vec3d center_;

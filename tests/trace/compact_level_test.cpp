@@ -11,6 +11,7 @@
 
 #include "field/math/elementary.h"
 #include "field/trace/near_far.h"
+#include "field/trace/precision.h"
 #include "field/trace/source_emitter.h"
 #include "tests/field/random.h"
 
@@ -82,6 +83,12 @@ TEST(CompactLevel, AllInstructionSetsWriteTheSameBits) {
       ASSERT_EQ(written(lists, set), expected) << set;
     }
   }
+}
+
+TEST(CompactLevel, OnlyWhatCanBeCompactIsNotKept) {
+  EXPECT_EQ(kept_bytes_for(too_many_pieces, false), 0U);
+  EXPECT_GT(kept_bytes_for(too_many_pieces - 1, false), 0U);
+  EXPECT_GT(kept_bytes_for(too_many_pieces, true), 0U);
 }
 
 TEST(CompactLevel, CopiesHoldTheSame) {

@@ -45,7 +45,8 @@ struct Stage {
              fine_far_degree_for(sources.pieces().size())),
         tree(sources, coarse, fine, iso, kernels, field.degree, cells_for(sources.pieces().size())),
         cells(tree.cells()),
-        context{sources.pieces(), tree, cutter, coarse, fine, iso, kernels, field.degree, arena, kept_bytes_for(0)} {}
+        context{sources.pieces(),        tree, cutter, coarse, fine, iso, kernels, field.degree, arena,
+                kept_bytes_for(0, false)} {}
 
   Block block(std::size_t cell) const { return Block(context, cells[cell]); }
   double value(const Vec3d& p) const { return corrected_value(field, p); }
