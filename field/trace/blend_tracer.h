@@ -46,6 +46,8 @@ struct TraceOptions {
   std::optional<CellTreeSettings> cells{};
   /// To which far sources of the two levels are gathered, 4, 6 or 8; empty: by the number of pieces.
   std::optional<int> coarse_far_degree{}, fine_far_degree{};
+  /// Whether slots of blocks tell which of their eighths may hold surface; empty: by the number of pieces and samples.
+  std::optional<bool> eighths{};
   /// As in CellTreeSettings.
   std::shared_ptr<const RaySpacing> spacing{};
 };

@@ -83,6 +83,7 @@ struct BlendTracer::State {
       context.strands = &*strands;
     }
     context.compact_bytes = options.compact_bytes;
+    context.eighths = options.eighths.value_or(have_eighths(sources.pieces().size(), options.spacing.get()));
     for (std::size_t i = 0; i < tree.tile_count(); ++i) bounds.include(tree.tile_box(i));
   }
 

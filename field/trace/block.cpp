@@ -19,10 +19,11 @@ bool holds_surface(const CubeBounds& b, const IsoCurve& iso) {
   return b.touches || !iso.outside(0, static_cast<double>(b.f_high), static_cast<double>(b.g_high));
 }
 
-// Whether surface can be in a cube of a block, which is taken a little larger than it is, by far more than the rounding
-// of rays in float.
+// Cubes are taken so much larger than they are, by far more than the rounding of rays in float.
+constexpr double overlap = 1e-4;
+
+// Whether surface can be in a cube of a block.
 bool may_hold(const Block::Context& context, const FieldLevel& level, const Vec3d& center, double half) {
-  constexpr double overlap = 1e-4;
   const float c[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
   return holds_surface(context.kernels.cube_bounds(level, context.degree, c, static_cast<float>(half + overlap)),
                        context.iso);
@@ -81,6 +82,8 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
                 [](const void* owner, std::uint64_t (&octants)[8]) {
                   return static_cast<const Block*>(owner)->known_surface(octants);
                 },
+            .find_eighths = [](const void* owner,
+                               int slot) { return static_cast<const Block*>(owner)->find_eighths(slot); },
             .make_coarse = [](const void* owner) -> const FieldLevel& {
               return static_cast<const Block*>(owner)->coarse().level;
             },
@@ -116,6 +119,7 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
   };
   if (have_angles()) {
     find_octants(coarse());
+    make_room_for_eighths();
     return;
   }
   // Nothing is kept of a cell that turns out to be empty, as half of them do where strands are thin.
@@ -123,6 +127,7 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
   const auto expand = [&](auto& memory) { return expanded(made, context.kernels, in(memory)); };
   find_octants(levels(LevelKind::Coarse).get(serial_, expand));
   if (octants_ == 0) return;
+  make_room_for_eighths();
   if (has_room()) coarse_.whole.get([&] { return std::make_unique<const BlockLevel>(expand(context.arena)); });
   else keep(coarse_, made);
 }
@@ -136,6 +141,31 @@ std::uint64_t Block::surface(int octant) const {
     surface_known_.fetch_or(static_cast<std::uint8_t>(1U << octant), std::memory_order_release);
   }
   return slots.load(std::memory_order_relaxed);
+}
+
+void Block::make_room_for_eighths() {
+  if (!context_.eighths || octants_ == 0) return;
+  eighths_ = reinterpret_cast<unsigned char*>(context_.arena.allocate(slots_of_block / sizeof(float)));
+  std::fill_n(eighths_, slots_of_block, static_cast<unsigned char>(unknown_eighths));
+  view_.eighths = eighths_;
+}
+
+// Whoever asks first finds the same.
+unsigned Block::find_eighths(int slot) const {
+  const int octant = slot >> 6;
+  unsigned found = 0;
+  if (surface(octant) >> (slot & 63) & 1) {
+    CubeBounds bounds[8];
+    const Vec3d center = slot_center(octant_center({0, 0, 0}, 1, octant), 0.5, slot & 63);
+    const float c[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
+    context_.kernels.octant_cube_bounds(coarse().level, context_.degree, c, 0.125F, static_cast<float>(overlap),
+                                        bounds);
+    for (unsigned i = 0; i < 8; ++i)
+      if (holds_surface(bounds[i], context_.iso)) found |= 1U << i;
+    if (found == unknown_eighths) found |= 2;
+  }
+  std::atomic_ref(eighths_[slot]).store(static_cast<unsigned char>(found), std::memory_order_relaxed);
+  return found;
 }
 
 unsigned Block::known_surface(std::uint64_t (&octants)[8]) const {

@@ -42,6 +42,7 @@ class alignas(64) Block : public InHugePages {
     const SourceTree* angle = nullptr;  ///< of angle_field.h, where skeletons have an angle each
     const Strands* strands = nullptr;   ///< where their directions give the angle
     std::size_t compact_bytes = 0;      ///< see TraceOptions
+    bool eighths = true;                ///< slots tell which of their eighths may hold surface
   };
   /// The context must outlive the block.
   Block(const Context&, const CellTree::Cell&);
@@ -86,6 +87,8 @@ class alignas(64) Block : public InHugePages {
   void ask_for(const Stored&, bool rest) const;
   std::uint64_t surface(int octant) const;
   unsigned known_surface(std::uint64_t (&octants)[8]) const;
+  void make_room_for_eighths();
+  unsigned find_eighths(int slot) const;
   const SharePart& part(int path) const;
 
   // What each ray needs comes first, in three cache lines; of the view that is what makes the levels.
@@ -96,6 +99,7 @@ class alignas(64) Block : public InHugePages {
   std::uint64_t serial_;
   const Context& context_;
   mutable std::array<std::atomic<std::uint64_t>, 8> surface_{};
+  unsigned char* eighths_ = nullptr;  // BlockView's, in the arena
   BlockView view_;
   std::unique_ptr<const SharePatches> patches_;
 };

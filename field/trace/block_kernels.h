@@ -73,6 +73,10 @@ struct FieldLevel {
                                          ///< are those of the level, in their order
 };
 
+inline constexpr int slots_of_block = 512;
+/// Slots of which only the first eighth may hold surface are said to have the second one, too.
+inline constexpr unsigned unknown_eighths = 1;
+
 /// What the kernels read of a block. The coarse level finds where the surface can be; the fine level is the field that
 /// is rendered.
 struct BlockView {
@@ -81,6 +85,10 @@ struct BlockView {
   std::uint64_t (*find_surface)(const void* owner, int octant) = nullptr;
   /// The same of all octants of which it is known by now, a bit for each of these; 0 of the others.
   unsigned (*find_known_surface)(const void* owner, std::uint64_t (&octants)[8]) = nullptr;
+  /// Null, or of each slot, 64 octant + slot, a bit for each of its eighths (x the lowest) that may hold surface, or
+  /// unknown_eighths until find_eighths is asked; 64-byte aligned. Null, too, where no slot may.
+  const unsigned char* eighths = nullptr;
+  unsigned (*find_eighths)(const void* owner, int slot) = nullptr;
   /// Made when they are needed; one that is not kept is good until the same is asked of another block.
   const FieldLevel& (*make_coarse)(const void* owner) = nullptr;
   const FieldLevel& (*make_fine)(const void* owner) = nullptr;
@@ -100,6 +108,10 @@ struct BlockView {
 
   std::uint64_t surface(int octant) const { return find_surface(owner, octant); }
   unsigned known_surface(std::uint64_t (&octants)[8]) const { return find_known_surface(owner, octants); }
+  int eighths_of(int slot) const {
+    const unsigned char known = __atomic_load_n(eighths + slot, __ATOMIC_RELAXED);
+    return static_cast<int>(known != unknown_eighths ? known : find_eighths(owner, slot));
+  }
   const FieldLevel& coarse() const { return make_coarse(owner); }
   const FieldLevel& fine() const { return make_fine(owner); }
 };
@@ -135,7 +147,7 @@ struct TileLayers {
 struct PacketMemory {
   // What is in them is known to the kernels alone, which check that it fits: a stack of islands of each lane, and some
   // hundred and fifty floats a ray, most of them for runs whose angle goes by patches.
-  static constexpr std::size_t of_search = 96 << 10, of_rays = packet_size * 608;
+  static constexpr std::size_t of_search = 96 << 10, of_rays = packet_size * 640;
   alignas(64) unsigned char search[of_search];
   alignas(64) unsigned char rays[of_rays];
 };
@@ -329,6 +341,10 @@ struct BlockKernels {
   /// Writes the sources of curves, group after group; unused lanes of the last one as SourceGroups leaves them.
   void (*write_nodes)(const CurvePiece*, int count, const NodeTable&, float* groups);
   CubeBounds (*cube_bounds)(const FieldLevel&, int degree, const float center[3], float half);
+  /// Of the eight octants of a cube (x the lowest bit), each `margin` larger than it is. Not as close as cube_bounds():
+  /// what is far from the whole cube is bounded there.
+  void (*octant_cube_bounds)(const FieldLevel&, int degree, const float center[3], float half, float margin,
+                             CubeBounds (&octants)[8]);
   /// Moments of groups of inverted sources (y, field at the origin, tau), without the constants of MomentTable.
   void (*far_moments)(const float* groups, int count, int far_degree, float* f, float* potential);
   /// Sets a bit of near[k] for each lane of group k that is not far.

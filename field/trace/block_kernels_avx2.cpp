@@ -30,6 +30,8 @@ namespace {
 #include "field/trace/kernels/march.h"
 #include "field/trace/kernels/search.h"
 #include "field/trace/kernels/approach.h"
+#include "field/trace/kernels/layers.h"
+#include "field/trace/kernels/slot_bits.h"
 #include "field/trace/kernels/runs.h"
 #include "field/trace/kernels/departure.h"
 #include "field/trace/kernels/first_root.h"
@@ -50,9 +52,10 @@ namespace {
 }  // namespace
 
 const BlockKernels& table() {
-  static constexpr BlockKernels kernels{first_root,    enter_cell,    roots_between, point_fields,   surface_starts,
-                                        place_margins, walk,          write_nodes,   cube_bounds,    far_moments,
-                                        far_split,     octant_bounds, strand_shares, strand_samples, add_strand};
+  static constexpr BlockKernels kernels{first_root,     enter_cell,         roots_between,  point_fields,
+                                        surface_starts, place_margins,      walk,           write_nodes,
+                                        cube_bounds,    octant_cube_bounds, far_moments,    far_split,
+                                        octant_bounds,  strand_shares,      strand_samples, add_strand};
   return kernels;
 }
 

@@ -189,7 +189,7 @@ StressScene::StressScene(std::uint64_t number) {
 }
 
 // Half of the scenes are divided for many rays; the others for so few that cells are as large as they may be, in tiles
-// of small or of many primitives.
+// of small or of many primitives. Half of either have eighths of slots.
 TraceOptions options_of(std::uint64_t number) {
   TraceOptions options;
   const std::uint64_t way = number / single_angle_kinds % 4;
@@ -198,6 +198,7 @@ TraceOptions options_of(std::uint64_t number) {
     few.views.push_back({.eye = {}, .constant = std::numeric_limits<double>::infinity()});
     options.spacing = std::make_shared<const RaySpacing>(few);
   }
+  options.eighths = way % 2 == 1;
   if (way == 3) options.cells = {.cell_size = 1.6, .tile_levels = 2};
   return options;
 }

@@ -126,21 +126,23 @@ Vec3d surface_between(const Stage& stage, const Block& block, Vec3d outside, Vec
   return inside;
 }
 
-// Whether the slot of x, in block coordinates, may hold surface.
+// Whether the slot of x, in block coordinates, may hold surface, and the eighth of it.
 bool may_hold(const Block& block, const Vec3d& x) {
-  int octant = 0, slot = 0;
+  int octant = 0, slot = 0, eighth = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const int i = std::clamp(static_cast<int>(std::floor(4 * x[k] + 4)), 0, 7);
-    octant |= i >> 2 << k;
-    slot |= (i & 3) << (2 * k);
+    const int i = std::clamp(static_cast<int>(std::floor(8 * x[k] + 8)), 0, 15);
+    octant |= i >> 3 << k;
+    slot |= (i >> 1 & 3) << (2 * k);
+    eighth |= (i & 1) << k;
   }
-  return block.view().surface(octant) >> slot & 1;
+  if (!(block.view().surface(octant) >> slot & 1)) return false;
+  return block.view().eighths_of(64 * octant + slot) >> eighth & 1;
 }
 
-TEST(Block, SlotsHoldAllSurface) {
+TEST(Block, SlotsAndEighthsHoldAllSurface) {
   Random random(63);
   int surface = 0;
-  double slots = 0, blocks = 0;
+  double slots = 0, eighths = 0, blocks = 0;
   for (const Setting& s : settings()) {
     const Stage stage(random_scene(random, s, random.whole(2, 9)));
     for (int i = 0; i < 60; ++i) {
@@ -156,11 +158,15 @@ TEST(Block, SlotsHoldAllSurface) {
         ASSERT_TRUE(may_hold(block, x)) << name_of(s);
       }
       for (int octant = 0; octant < 8; ++octant) slots += std::popcount(block.view().surface(octant));
+      for (int slot = 0; slot < slots_of_block && !block.empty(); ++slot)
+        eighths += std::popcount(static_cast<unsigned>(block.view().eighths_of(slot)));
       ++blocks;
     }
   }
-  std::cout << "  " << surface << " points of surface; slots of a block that may hold some: " << slots / blocks << '\n';
+  std::cout << "  " << surface << " points of surface; slots of a block that may hold some: " << slots / blocks
+            << ", their eighths: " << eighths / blocks << '\n';
   EXPECT_GT(surface, 2000);
+  EXPECT_LT(eighths, 0.85 * 8 * slots);
 }
 
 // What a thread remembers of a block that is gone must not be taken for that of one at its address.

@@ -26,7 +26,10 @@ std::vector<Variant> variants_here(int far_degree) {
   for (const std::string& name : sets_here()) all.push_back({name, {.instruction_set = name}});
   all.push_back({"nothing kept", {.instruction_set = "", .kept_bytes = 0, .compact_bytes = 0}});
   all.push_back({"compact", {.instruction_set = "", .kept_bytes = 0}});
-  for (Variant& v : all) v.options.coarse_far_degree = far_degree;
+  for (Variant& v : all) {
+    v.options.coarse_far_degree = far_degree;
+    v.options.eighths = far_degree == high_far_degree;
+  }
   return all;
 }
 

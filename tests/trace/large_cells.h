@@ -14,6 +14,7 @@ inline TraceOptions large_cells() {
   few.views.push_back({.eye = {}, .constant = std::numeric_limits<double>::infinity()});
   TraceOptions options;
   options.spacing = std::make_shared<const RaySpacing>(few);
+  options.eighths = true;
   return options;
 }
 

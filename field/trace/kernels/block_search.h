@@ -157,9 +157,11 @@ class BlockSearch {
     open.for_each_group<packet_lanes>([&](int first) {
       const PacketRays ray = rays_of_group(first);
       const BlocksOf<PacketFloat> blocks{cells_, load_native(r.cell + first)};
-      const SlotBits<PacketFloat> slots(blocks, own_->slots, PacketMask(open.group<packet_lanes>(first)));
+      const PacketMask rays(open.group<packet_lanes>(first));
+      const SlotBits<PacketFloat> slots(blocks, own_->slots, rays);
+      const Eighths<PacketFloat> eighths(blocks, rays);
       new (&own_->runs[first / packet_lanes])
-          RunsOfGroup(blocks, slots, ray, load_native(r.from + first), load_native(r.to + first));
+          RunsOfGroup(blocks, slots, eighths, ray, load_native(r.from + first), load_native(r.to + first));
     });
   }
 

@@ -156,7 +156,7 @@ inline RootOf<float> first_root_of(const BlockView& block, const LocalRay& ray, 
     if (!leave_surface<Rule>(block, BlocksOf<float>{&block}, fine, ray, around, query, true, root, front)) return root;
   }
   const BlocksOf<float> itself{&block};
-  Runs<Rule, float> runs(itself, SlotBits<float>(itself), ray, front, query.t1);
+  Runs<Rule, float> runs(itself, SlotBits<float>(itself), Eighths<float>(itself), ray, front, query.t1);
   Run<float> run;
   while (!root.hit && (run.begin < run.end || runs.next(ray, true, run))) {
     const float begin = run.begin;

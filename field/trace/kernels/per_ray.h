@@ -98,6 +98,49 @@ inline PacketInt gather(const int* table, PacketInt index) {
   return gather_lanes<NativeInt>(table, index);
 #endif
 }
+// Of four bytes each, `offset` bytes behind those of a lane; 0 in lanes that are not asked.
+#if defined(__AVX2__)
+using LongLanes = long long __attribute__((vector_size(4 * packet_lanes)));  // of half the lanes
+using HalfInt = int __attribute__((vector_size(2 * packet_lanes)));
+inline HalfInt gather_half(const unsigned char* const* bytes, HalfInt offset, unsigned asked) {
+  LongLanes base;
+  __builtin_memcpy(&base, bytes, sizeof base);
+  const LongLanes place = base + __builtin_convertvector(offset, LongLanes);
+#if defined(__AVX512F__)
+  return __builtin_ia32_gatherdiv16si(HalfInt{}, nullptr, place, static_cast<char>(asked), 1);
+#else
+  const HalfInt bit{1, 2, 4, 8}, mask = (bit & static_cast<int>(asked)) != 0;
+  return __builtin_ia32_gatherdiv4si256(HalfInt{}, nullptr, place, mask, 1);
+#endif
+}
+#endif
+inline PacketInt gather_from(const unsigned char* const (&bytes)[packet_lanes], PacketInt offset, PacketMask asked) {
+#if defined(__AVX2__)
+  constexpr int half = packet_lanes / 2;
+  const NativeInt at = offset;
+#if defined(__AVX512F__)
+  const HalfInt low = __builtin_shufflevector(at, at, 0, 1, 2, 3, 4, 5, 6, 7),
+                high = __builtin_shufflevector(at, at, 8, 9, 10, 11, 12, 13, 14, 15);
+#else
+  const HalfInt low = __builtin_shufflevector(at, at, 0, 1, 2, 3), high = __builtin_shufflevector(at, at, 4, 5, 6, 7);
+#endif
+  const HalfInt a = gather_half(bytes, low, asked.bits()), b = gather_half(bytes + half, high, asked.bits() >> half);
+#if defined(__AVX512F__)
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#else
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+#endif
+#else
+  NativeInt found{};
+  for (unsigned left = asked.bits(); left != 0; left &= left - 1) {
+    const int lane = __builtin_ctz(left);
+    int four;
+    __builtin_memcpy(&four, bytes[lane] + offset[lane], sizeof four);
+    found[lane] = four;
+  }
+  return found;
+#endif
+}
 // An entry of a table, and the next one.
 template <class F>
 struct Neighbours {

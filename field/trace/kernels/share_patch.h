@@ -35,11 +35,11 @@ inline OnWay<Degree, F> operator+(OnWay<Degree, F> p, const OnWay<Degree, F>& q)
   return p;
 }
 
-// The layer of a coordinate.
-template <class F>
+// The layer of a coordinate, of so many in a block.
+template <int Count = 8, class F>
 inline IntOf<F> layer_of(F x) {
-  constexpr float last = 7.5F;
-  return whole_part(max_of(0.0F, min_of(x * 4 + 4, last)));
+  constexpr float half = 0.5F * Count, last = Count - 0.5F;
+  return whole_part(max_of(0.0F, min_of(x * half + half, last)));
 }
 
 // The path to a slot: from the largest cube to the smallest the octants that hold it, x the lowest bit of each.
