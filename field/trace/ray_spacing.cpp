@@ -26,7 +26,7 @@ double RaySpacing::in_cube(const Vec3d& center, double half) const {
 
 // Figures in the README. Later samples make up for smaller cells.
 double RaySpacing::least_cell(const Vec3d& center, double half) const {
-  const double rays = come_once ? 12 : 8;
+  const double rays = samples == 1 ? 12 : 8;
   return rays * in_cube(center, half);
 }
 

@@ -16,8 +16,8 @@ struct RaySpacing {
     double constant = 0, per_distance = 0;
   };
   std::vector<View> views;
-  /// Each view's rays come once: there will be one sample a pixel.
-  bool come_once = false;
+  /// How often each view's rays come: the samples of a pixel; 0: not known, but more than once.
+  int samples = 0;
 
   /// How far apart the rays of all views together are in a cube, at most (of many thousand views: about): where many
   /// placements share a blend each of its cells is met by the rays of all of them. 0 without views.

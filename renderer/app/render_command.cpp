@@ -64,7 +64,7 @@ SurfaceOptions surface_options(const RenderCommand& command, const RenderSetting
           .embree_isa = command.embree_isa,
           .threads = command.threads,
           .eager = command.eager,
-          .one_sample = sample_count(settings) == 1};
+          .samples = sample_count(settings)};
 }
 
 // 0: as many as the machine has.

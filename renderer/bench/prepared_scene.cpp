@@ -18,7 +18,8 @@ Result<PreparedScene> prepare_scene(const std::filesystem::path& path, const std
   PreparedScene ready;
   ready.description = std::move(*description);
   ready.read_s = elapsed();
-  auto surfaces = build_surfaces(ready.description, {.isa = {}, .threads = threads});
+  auto surfaces = build_surfaces(
+      ready.description, {.isa = {}, .threads = threads, .samples = ready.description.render.samples_per_pixel});
   if (!surfaces) return surfaces.why();
   ready.surfaces = std::move(*surfaces);
   ready.build_s = elapsed() - ready.read_s;

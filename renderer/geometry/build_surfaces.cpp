@@ -94,7 +94,7 @@ class Builder {
       auto& same = part.shared != 0 ? shared_[part.shared] : part.shape != 0 ? placed[part.shape] : alone;
       if (same == nullptr) same = std::make_shared<Traced>();
       same->spacing->views.push_back(ray_spacing(scene_, part.local_from_world));
-      same->spacing->come_once = options_.one_sample;
+      same->spacing->samples = options_.samples;
       field.tracers.push_back(same);
     }
     return field;

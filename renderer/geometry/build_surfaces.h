@@ -18,8 +18,9 @@ struct SurfaceOptions {
   /// What is otherwise made when the first ray needs it is made at once, as far as a lattice of rays meets it. Pictures
   /// do not depend on it.
   bool eager = false;
-  /// One sample of each pixel is all that is wanted: space is divided less finely, and pictures differ by rounding.
-  bool one_sample = false;
+  /// How many samples of each pixel are wanted; 0: not known. For one alone space is divided less finely, for sixteen
+  /// or more slots of large blends more finely, and pictures differ by rounding.
+  int samples = 0;
 };
 
 struct SurfaceReport {

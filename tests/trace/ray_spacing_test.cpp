@@ -10,14 +10,15 @@
 #include <gtest/gtest.h>
 
 #include "field/trace/blend_tracer.h"
+#include "field/trace/precision.h"
 #include "tests/trace/first_of_tiles.h"
 #include "tests/trace/random_rays.h"
 
 namespace marrow::test {
 namespace {
 
-RaySpacing seen_from(const Vec3d& eye, bool come_once) {
-  return {.views = {{.eye = eye, .constant = 0, .per_distance = 0.002}}, .come_once = come_once};
+RaySpacing seen_from(const Vec3d& eye, int samples) {
+  return {.views = {{.eye = eye, .constant = 0, .per_distance = 0.002}}, .samples = samples};
 }
 
 TEST(RaySpacing, IsNowhereLessThanInTheCube) {
@@ -36,7 +37,7 @@ TEST(RaySpacing, IsNowhereLessThanInTheCube) {
 }
 
 TEST(RaySpacing, RaysOfAllPlacementsComeTogether) {
-  RaySpacing spacing = seen_from({0, 0, 9}, false);
+  RaySpacing spacing = seen_from({0, 0, 9}, 0);
   const double alone = spacing.in_cube({0, 0, 0}, 0.1);
   spacing.views.resize(100, spacing.views.front());
   EXPECT_NEAR(spacing.in_cube({0, 0, 0}, 0.1), alone / 10, 1e-12);
@@ -45,8 +46,22 @@ TEST(RaySpacing, RaysOfAllPlacementsComeTogether) {
 }
 
 TEST(RaySpacing, CellsAreLargerWhereRaysComeOnce) {
-  const RaySpacing often = seen_from({0, 0, 9}, false), once = seen_from({0, 0, 9}, true);
+  const RaySpacing often = seen_from({0, 0, 9}, 0), once = seen_from({0, 0, 9}, 1);
   EXPECT_GT(once.least_cell({0, 0, 0}, 0.1), often.least_cell({0, 0, 0}, 0.1));
+}
+
+TEST(RaySpacing, SlotsHaveEighthsWhereManyRaysComeToManyPieces) {
+  const auto eighths = [](std::size_t pieces, int samples) {
+    const RaySpacing spacing = seen_from({0, 0, 9}, samples);
+    return have_eighths(pieces, &spacing);
+  };
+  EXPECT_TRUE(eighths(many_pieces, 64));
+  EXPECT_TRUE(eighths(many_pieces, 0));
+  EXPECT_TRUE(have_eighths(many_pieces, nullptr));
+  EXPECT_FALSE(eighths(many_pieces, 1));
+  EXPECT_FALSE(eighths(many_pieces, 4));
+  EXPECT_FALSE(eighths(many_pieces - 1, 64));
+  EXPECT_FALSE(eighths(too_many_pieces, 64));
 }
 
 std::unique_ptr<BlendTracer> tracer_of(const BlendField& blend, std::optional<RaySpacing> spacing) {
@@ -74,8 +89,8 @@ int same_hits(Random& random, const BlendField& blend, const BlendTracer& one, c
 TEST(RaySpacing, LargerCellsHoldTheSameSurface) {
   Random random(82);
   const BlendField blend = random_scene(random, {4, contact_alpha(4)}, 9);
-  const auto all = tracer_of(blend, {}), few = tracer_of(blend, seen_from({0, 0, 9}, false)),
-             fewer = tracer_of(blend, seen_from({0, 0, 9}, true));
+  const auto all = tracer_of(blend, {}), few = tracer_of(blend, seen_from({0, 0, 9}, 0)),
+             fewer = tracer_of(blend, seen_from({0, 0, 9}, 1));
   for (const BlendTracer* larger : {few.get(), fewer.get()}) EXPECT_GT(same_hits(random, blend, *all, *larger), 500);
   EXPECT_GT(all->statistics().blocks, few->statistics().blocks);
   EXPECT_GT(few->statistics().blocks, fewer->statistics().blocks);
@@ -107,7 +122,7 @@ TEST(RaySpacing, CellsOfThinThreadsHoldTheSameSurface) {
     blend.segments.add({from, from + random.vector(0.1), radius, 0.8 * radius}, {});
   }
   TraceOptions options;
-  options.spacing = std::make_shared<const RaySpacing>(seen_from({0, 0, 9}, false));
+  options.spacing = std::make_shared<const RaySpacing>(seen_from({0, 0, 9}, 0));
   const auto fine = std::move(*BlendTracer::make(blend, {})), few = std::move(*BlendTracer::make(blend, options));
   int hits = 0, misses = 0;
   for (std::size_t i = 0; i < 3000; ++i) {
