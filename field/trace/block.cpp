@@ -84,6 +84,7 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
                 },
             .find_eighths = [](const void* owner,
                                int slot) { return static_cast<const Block*>(owner)->find_eighths(slot); },
+            .tells_eighths = context.eighths,
             .make_coarse = [](const void* owner) -> const FieldLevel& {
               return static_cast<const Block*>(owner)->coarse().level;
             },

@@ -89,6 +89,7 @@ struct BlockView {
   /// unknown_eighths until find_eighths is asked; 64-byte aligned. Null, too, where no slot may.
   const unsigned char* eighths = nullptr;
   unsigned (*find_eighths)(const void* owner, int slot) = nullptr;
+  bool tells_eighths = false;  ///< the same of all blocks of a blend, with slots that may hold surface or without
   /// Made when they are needed; one that is not kept is good until the same is asked of another block.
   const FieldLevel& (*make_coarse)(const void* owner) = nullptr;
   const FieldLevel& (*make_fine)(const void* owner) = nullptr;

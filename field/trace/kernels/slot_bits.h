@@ -103,7 +103,7 @@ template <>
 class Eighths<float> {
  public:
   explicit Eighths(const BlocksOf<float>& blocks) : block_(blocks.block) {}
-  bool told() const { return block_->eighths != nullptr; }
+  bool told() const { return block_->tells_eighths; }
   int of_slot(int address, bool active) const { return active ? block_->eighths_of(address) : 0; }
 
  private:
@@ -115,12 +115,13 @@ class Eighths<PacketFloat> {
  public:
   Eighths() = default;
   Eighths(const BlocksOf<PacketFloat>& blocks, PacketMask rays) : blocks_(blocks) {
+    const int first = __builtin_ctz(rays.bits());
+    told_ = blocks.of(first).tells_eighths;
+    if (!told_) return;
     for (unsigned left = rays.bits(); left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left);
       bytes_[lane] = blocks.of(lane).eighths;
-      if (bytes_[lane] != nullptr) told_ = true;
     }
-    const int first = __builtin_ctz(rays.bits());
     if (!any(rays & (blocks.cell != blocks.cell[first]))) of_all_ = reinterpret_cast<const int*>(bytes_[first]);
   }
   bool told() const { return told_; }
