@@ -82,9 +82,9 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
                 [](const void* owner, std::uint64_t (&octants)[8]) {
                   return static_cast<const Block*>(owner)->known_surface(octants);
                 },
+            .tells_eighths = context.eighths,
             .find_eighths = [](const void* owner,
                                int slot) { return static_cast<const Block*>(owner)->find_eighths(slot); },
-            .tells_eighths = context.eighths,
             .make_coarse = [](const void* owner) -> const FieldLevel& {
               return static_cast<const Block*>(owner)->coarse().level;
             },
