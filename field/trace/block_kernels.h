@@ -147,7 +147,7 @@ struct StrandShares {
 };
 inline constexpr int floats_per_strand = 20 * lanes;  ///< of the memory that it takes
 
-inline constexpr int most_far_moments = 424;  ///< see MomentTable: 80, 200, 420 of degree 4, 6, 8, in eights
+inline constexpr int most_far_moments = 224;  ///< monomials of degree 9, in eights
 inline constexpr int most_far_nodes = 5;
 
 inline constexpr int floats_per_piece_group = 13 * lanes;
@@ -196,8 +196,7 @@ struct FarQuery {
 /// Sums over the pieces that are far: their errors, their field and |G| at the cube's centre at most, their moments.
 struct FarSums {
   float f_error, g_error, field, gradient;
-  float f[most_far_moments],
-      potential[most_far_moments];  ///< in units of the cube, without the constants of MomentTable
+  float f[most_far_moments], potential[most_far_moments];  ///< as far_moments() finds them
 };
 
 inline constexpr int floats_per_strand_group = 7 * lanes;  ///< xyz, weight, direction xyz
@@ -264,7 +263,8 @@ struct BlockKernels {
   /// what is far from the whole cube is bounded there.
   void (*octant_cube_bounds)(const FieldLevel&, int degree, const float center[3], float half, float margin,
                              CubeBounds (&octants)[8]);
-  /// Moments of groups of inverted sources (y, field at the origin, tau), without the constants of MomentTable.
+  /// Moments of groups of inverted sources (y, field at the origin, tau): sums of the field times the monomials of y to
+  /// the far degree, in the order of far_field.h, and of the field times tau times those to a degree more.
   void (*far_moments)(const float* groups, int count, int far_degree, float* f, float* potential);
   /// Sets a bit of near[k] for each lane of group k that is not far.
   void (*far_split)(const float* pieces, int groups, const FarQuery&, unsigned short* near, FarSums&);

@@ -13,6 +13,11 @@ constexpr int highest_degree = highest_far_degree + 1;
 
 constexpr std::size_t first_of_degree(int d) { return static_cast<std::size_t>(d * (d + 1) * (d + 2) / 6); }
 
+// For all k + 2j <= degree.
+constexpr std::size_t moments_to_degree(int degree) {
+  return degree < 0 ? 0 : monomials_to_degree(degree) + moments_to_degree(degree - 2);
+}
+
 constexpr double factorial(int k) { return k <= 1 ? 1 : k * factorial(k - 1); }
 
 constexpr double multinomial(const Monomial& m) {
@@ -91,11 +96,44 @@ MomentTable::MomentTable(int exponent, int far_degree) : far_degree_(far_degree)
   }
 }
 
+// Where monomials times x^2, y^2 and z^2 are.
+constexpr auto times_squares = [] {
+  std::array<std::array<std::uint8_t, 3>, monomials_to_degree(highest_degree - 2)> at{};
+  const auto index = [](int a, int b, int c) { return static_cast<std::uint8_t>(monomial_index(a, b, c)); };
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const auto [a, b, c] = monomials[i];
+    at[i] = {index(a + 2, b, c), index(a, b + 2, c), index(a, b, c + 2)};
+  }
+  return at;
+}();
+
+// One j after the other.
+struct MomentTable::Moments {
+  std::array<double, moments_to_degree(highest_degree)> all{};
+};
+
+// From those with j = 0; what would be of a higher degree stays 0.
+MomentTable::Moments MomentTable::moments(const float* sums, int degree) const {
+  Moments m;
+  std::copy(sums, sums + monomials_to_degree(degree), m.all.begin());
+  std::size_t before = 0, here = monomials_to_degree(far_degree_ + 1);
+  for (int j = 1; 2 * j <= degree; ++j) {
+    for (std::size_t i = 0; i < monomials_to_degree(degree - 2 * j); ++i) {
+      const auto& [x, y, z] = times_squares[i];
+      m.all[here + i] = m.all[before + x] + m.all[before + y] + m.all[before + z];
+    }
+    before = here;
+    here += monomials_to_degree(far_degree_ + 1 - 2 * j);
+  }
+  return m;
+}
+
 void MomentTable::add(const float* f, const float* potential, FarField& far) const {
   far.degree = std::max(far.degree, far_degree_);
+  const Moments of_f = moments(f, far_degree_), of_potential = moments(potential, far_degree_ + 1);
   for (std::size_t i = 0; i < field_terms_; ++i)
-    far.f[terms_[i].monomial] += terms_[i].factor * static_cast<double>(f[terms_[i].moment]);
-  for (const Term& t : terms_) far.potential[t.monomial] += t.factor * static_cast<double>(potential[t.moment]);
+    far.f[terms_[i].monomial] += terms_[i].factor * of_f.all[terms_[i].moment];
+  for (const Term& t : terms_) far.potential[t.monomial] += t.factor * of_potential.all[t.moment];
 }
 
 FarField FarField::of_child(int octant) const {

@@ -45,12 +45,14 @@ using Polynomial = std::array<double, monomial_count>;
 /// The expansion is the Gegenbauer series, |x - r|^-m = sum_k C_k^(m/2)(cos) |x|^k |r|^-(m+k). Its terms are
 /// (x.r)^k |x|^(2j) |r|^-(m+2k+2j) times a constant, so the moments needed for the degree P + 1 are
 ///   sum w r^(tensor k) |r|^-(m+2k+2j)   for k + 2j <= P + 1
-/// (56 + 20 + 4 numbers for P = 4), here without the constants, which are applied on the way. With y = r / |r|^2 and
-/// the field f_i = w |r|^-m of a source at the origin they are sums of f_i y^(tensor k) |y|^(2j).
+/// (56 + 20 + 4 numbers for P = 4). With y = r / |r|^2 and the field f_i = w |r|^-m of a source at the origin they are
+/// sums of f_i y^(tensor k) |y|^(2j); those with j = 0 give the others, as |y|^2 is a sum of three squares.
 class MomentTable {
  public:
   /// For one exponent m and one P.
   MomentTable(int exponent, int far_degree);
+  /// `f`: sums of f_i y^(tensor k) for k <= P, in the order of `monomials`; `potential`: of f_i tau_i y^(tensor k) for
+  /// k <= P + 1.
   void add(const float* f, const float* potential, struct FarField&) const;
 
  private:
@@ -58,6 +60,8 @@ class MomentTable {
     std::uint16_t moment, monomial;
     double factor;
   };
+  struct Moments;
+  Moments moments(const float* sums, int degree) const;
   int far_degree_;
   std::vector<Term> terms_;      // by the degree of their monomials
   std::size_t field_terms_ = 0;  // those of degree P at most

@@ -2,64 +2,113 @@
 // block_kernels_<set>.cpp.
 
 constexpr int monomials_to(int degree) { return (degree + 1) * (degree + 2) * (degree + 3) / 6; }
+constexpr int in_eights(int count) { return (count + 7) / 8 * 8; }
 
-// All monomials of degree <= Degree, each a smaller one times a coordinate, in the order of far_field.h.
-template <int Degree>
-inline void fill_monomials(V16 x, V16 y, V16 z, V16 (&m)[monomials_to(Degree)]) {
-  m[0] = splat(1);
-  m[1] = x, m[2] = y, m[3] = z;
-  for (int d = 2; d <= Degree; ++d) {
-    const int before = monomials_to(d - 2), here = monomials_to(d - 1), count = here - before;
-    V16* const to = m + here;
-    for (int i = 0; i < count; ++i) to[i] = x * m[before + i];
-    for (int i = 0; i < d; ++i) to[count + i] = y * m[here - d + i];
-    to[count + d] = z * m[here - 1];
-  }
-}
-
-// The number of moments for the degree P + 1 = Degree, see MomentTable.
-constexpr int moments_to(int degree) { return degree < 0 ? 0 : monomials_to(degree) + moments_to(degree - 2); }
-
-// For one j after the other the sums of f y^k |y|^(2j) over k + 2j <= Degree, without their constant factors; those of
-// the field stop at a degree less. `field` is f |y|^(2j).
-template <int Degree, int Monomials>
-inline void accumulate_moments(const V16 (&power)[Monomials], V16 field, V16 squared, V16 tau, V16* f, V16* potential) {
-  for (int i = 0; i < monomials_to(Degree - 1); ++i) {
-    const V16 v = field * power[i];
-    f[i] += v;
-    potential[i] += v * tau;
-  }
-  const V16 field_tau = field * tau;
-  for (int i = monomials_to(Degree - 1); i < monomials_to(Degree); ++i) potential[i] += field_tau * power[i];
-  if constexpr (Degree >= 2)
-    accumulate_moments<Degree - 2>(power, field * squared, squared, tau, f + monomials_to(Degree),
-                                   potential + monomials_to(Degree));
-}
-
+// Sums of f y^k over inverted sources for all monomials of degree <= FarDegree, and of f tau y^k for one degree more.
+// Sources wait until there are some, and then come monomials of the same powers of x and y at a time: their sums stay
+// in registers, each the last one's product times z.
 template <int FarDegree>
-struct MomentSums {
-  static constexpr int degree = FarDegree + 1, count = (moments_to(degree) + 7) / 8 * 8;
-  static_assert(count <= most_far_moments);
-  V16 f[count] = {}, potential[count] = {};
+class MomentSums {
+ public:
+  static constexpr int degree = FarDegree + 1;
 
   // One inverted source in each lane.
   void add(V16 x, V16 y, V16 z, V16 field, V16 tau) {
-    V16 power[monomials_to(degree)];
-    fill_monomials<degree>(x, y, z, power);
-    accumulate_moments<degree>(power, field, x * x + y * y + z * z, tau, f, potential);
+    if (waiting_ == most_waiting) add_waiting();
+    split(x, x_[waiting_]), split(y, y_[waiting_]), split(z, z_[waiting_]);
+    split(field, field_[waiting_]), split(tau, tau_[waiting_]);
+    ++waiting_;
   }
-  void write(float* f_out, float* potential_out) const {
-    for (int i = 0; i < count; i += 8) {  // eight sums of each kind at a time
-      V16 a[12] = {};
-      float s[16];
-      for (int k = 0; k < 8; ++k) a[k] = f[i + k];
-      sum_lanes(a, s);
-      for (int k = 0; k < 8; ++k) f_out[i + k] = s[k];
-      for (int k = 0; k < 8; ++k) a[k] = potential[i + k];
-      sum_lanes(a, s);
-      for (int k = 0; k < 8; ++k) potential_out[i + k] = s[k];
+
+  void write(float* f_out, float* potential_out) {
+    add_waiting();
+    write_sums(f_, FarDegree, f_out);
+    write_sums(potential_, degree, potential_out);
+  }
+
+ private:
+  static constexpr int most_waiting = 16, f_count = in_eights(monomials_to(FarDegree)),
+                       potential_count = in_eights(monomials_to(degree));
+  static_assert(potential_count <= most_far_moments);
+  using Part = Native[natives];
+
+  void add_waiting() {
+    Native* f = f_[0];
+    Native* potential = potential_[0];
+    for (int a = 0; a <= degree; ++a) {
+      for (int i = 0; i < waiting_; ++i)
+        for (int part = 0; part < natives; ++part) {
+          if (a > 0) field_[i][part] *= x_[i][part];
+          product_[i][part] = field_[i][part];
+        }
+      add_powers_of_y<degree>(degree - a, f, potential);
+    }
+    waiting_ = 0;
+  }
+
+  // Of all powers of y up to `most`, which is at most Most.
+  template <int Most>
+  void add_powers_of_y(int most, Native*& f, Native*& potential) {
+    if (most == Most) {
+      add_powers_of_z<Most>(f, potential);
+      f += Most * natives, potential += (Most + 1) * natives;
+      for (int i = 0; i < waiting_; ++i)
+        for (int part = 0; part < natives; ++part) product_[i][part] *= y_[i][part];
+      --most;
+    }
+    if constexpr (Most > 0) add_powers_of_y<Most - 1>(most, f, potential);
+  }
+
+  // Of the products so far, times the powers of z below Most for the field, up to Most for the potential.
+  template <int Most>
+  void add_powers_of_z(Native* f, Native* potential) const {
+    for (int part = 0; part < natives; ++part) {
+      if constexpr (Most > 0) {
+        Native sums[Most];
+        for (int c = 0; c < Most; ++c) sums[c] = f[c * natives + part];
+        for (int i = 0; i < waiting_; ++i) {
+          Native product = product_[i][part];
+          const Native z = z_[i][part];
+          for (int c = 0; c < Most; ++c, product *= z) sums[c] += product;
+        }
+        for (int c = 0; c < Most; ++c) f[c * natives + part] = sums[c];
+      }
+      Native sums[Most + 1];
+      for (int c = 0; c <= Most; ++c) sums[c] = potential[c * natives + part];
+      for (int i = 0; i < waiting_; ++i) {
+        Native product = product_[i][part] * tau_[i][part];
+        const Native z = z_[i][part];
+        for (int c = 0; c <= Most; ++c, product *= z) sums[c] += product;
+      }
+      for (int c = 0; c <= Most; ++c) potential[c * natives + part] = sums[c];
     }
   }
+
+  // In the order of far_field.h, eight at a time.
+  template <int Count>
+  static void write_sums(const Part (&sums)[Count], int degree_of_sums, float* out) {
+    float in_turn[Count];
+    for (int i = 0; i < Count; i += 8) {
+      V16 eight[12] = {};
+      for (int k = 0; k < 8; ++k) eight[k] = joined(sums[i + k]);
+      float s[16];
+      sum_lanes(eight, s);
+      for (int k = 0; k < 8; ++k) in_turn[i + k] = s[k];
+    }
+    const float* next = in_turn;
+    for (int a = 0; a <= degree_of_sums; ++a)
+      for (int b = 0; a + b <= degree_of_sums; ++b)
+        for (int c = 0; a + b + c <= degree_of_sums; ++c, ++next) {
+          const int rest = b + c;
+          out[monomials_to(a + rest - 1) + rest * (rest + 1) / 2 + c] = *next;
+        }
+  }
+
+  // Of each power of x one of y after the other, and of each of these all of z.
+  Part f_[f_count] = {}, potential_[potential_count] = {};
+  Part x_[most_waiting], y_[most_waiting], z_[most_waiting], field_[most_waiting], tau_[most_waiting];
+  Part product_[most_waiting];  // of the field with powers of x and y
+  int waiting_ = 0;
 };
 
 template <int FarDegree>
