@@ -14,8 +14,7 @@
 namespace marrow {
 namespace {
 
-// Of the half side of a cube: groups up to this size are passed on unopened to the cubes inside it.
-constexpr double largest_group = 0.25, largest_coarse_group = 0.5, open_all = NearFar::open_all;
+constexpr double open_all = NearFar::open_all;
 
 // How large a cell may be where rays are few, of the local radius.
 constexpr double most_radii = 12;
@@ -37,13 +36,21 @@ double distance2(const Box3& box, const Vec3d& p) {
 
 }  // namespace
 
-// What one cube of the upper levels gives to the next.
-struct CellTree::Level {
-  std::vector<TilePlace> tiles;
-  std::vector<CubeView> branches;
+// An upper cube to be expanded.
+struct CellTree::Branch {
+  CubeView view;
+  int octant;  // of the parent
+  const UpperCube* cube;
 };
 
-void CellTree::expand(const CubeView& parent, int depth, Level& out) const {
+// What one cube of the upper levels gives to the next, in which branches stand for themselves.
+struct CellTree::Level {
+  std::vector<TilePlace> tiles;
+  std::vector<Branch> branches;
+};
+
+void CellTree::expand(const Branch& branch, int depth, Level& out) const {
+  const CubeView& parent = branch.view;
   const double half = parent.half / 2, cells_along = integer_power(4, settings_.tile_levels);
   const auto octants = divider_.octants(parent);
   for (int i = 0; i < 8; ++i) {
@@ -52,8 +59,8 @@ void CellTree::expand(const CubeView& parent, int depth, Level& out) const {
     const Vec3d center = octant_center(parent.center, parent.half, i);
     if (half <= cells_along * settings_.cell_size * octant.local_radius || depth + 2 >= settings_.deepest_level ||
         is_hardly_met(octant, center, half / 2))
-      out.tiles.push_back({.center = center, .half = half, .level = depth});
-    else out.branches.push_back(divider_.child(parent, i));
+      out.tiles.push_back({.center = center, .half = half, .level = depth, .slot = i, .above = branch.cube});
+    else out.branches.push_back({divider_.child(parent, i), i, branch.cube});
   }
 }
 
@@ -65,7 +72,8 @@ CellTree::CellTree(const SourceTree& sources, const NearFar& coarse, const NearF
       divider_(sources, coarse, iso, kernels, degree),
       settings_(settings),
       most_thinnest_(most_thinnest(degree)),
-      most_thinnest_if_hardly_met_(most_thinnest_if_hardly_met(degree)) {
+      most_thinnest_if_hardly_met_(most_thinnest_if_hardly_met(degree)),
+      above_(sources, coarse, fine, kernels) {
   if (sources.pieces().empty()) return;
   for (place_tiles(); has_too_many_tiles(); place_tiles()) ++settings_.tile_levels;
   tiles_.reset(new Lazy<Tile>[places_.size()]);
@@ -74,8 +82,10 @@ CellTree::CellTree(const SourceTree& sources, const NearFar& coarse, const NearF
 // Level by level: the branches of a level are expanded in parallel, and gathered in their order.
 void CellTree::place_tiles() {
   places_.clear();
-  std::vector<CubeView> level{divider_.root()};
+  above_.clear();
+  std::vector<Branch> level{{divider_.root(), 0, nullptr}};
   for (int depth = 1; !level.empty(); ++depth) {
+    for (Branch& b : level) b.cube = &above_.add(b.view, b.cube, b.octant);
     std::vector<Level> expansions(level.size());
     tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) { expand(level[i], depth, expansions[i]); });
     level.clear();
@@ -143,12 +153,11 @@ CellTree::Cell CellTree::nearest_cell(std::size_t index, const Vec3d& p) const {
 }
 
 Surroundings CellTree::coarse_around(const TilePlace& place) const {
-  Surroundings s;
-  if (place.parent == nullptr) {
-    s.near = coarse_.split(sources_, sources_.roots(), place.center, place.half, largest_coarse_group, s.far);
-    return s;
-  }
+  if (place.parent == nullptr)
+    return refined(coarse_, sources_, &above_.coarse_around(*place.above), place.slot, place.center, place.half,
+                   largest_coarse_group);
   const SlotPath path = path_of(place.slot);
+  Surroundings s;
   s.far = place.parent->coarse().far.of_child(path.outer).of_child(path.inner);
   s.near = coarse_.split(sources_, place.parent->coarse().near, place.center, place.half, largest_coarse_group, s.far);
   return s;
@@ -196,41 +205,32 @@ std::unique_ptr<const Tile> CellTree::divide(const TilePlace& place) const {
   return std::make_unique<const Tile>(place, whole.sources, content);
 }
 
-// What a cube sees, as one of its octants sees it.
-Surroundings CellTree::refined(const NearFar& near_far, const Surroundings& parent, int octant, const Vec3d& center,
-                               double half, double keep) const {
-  Surroundings s{.near = {}, .far = parent.far.of_child(octant)};
-  s.near = near_far.split(sources_, parent.near, center, half, keep, s.far);
-  return s;
-}
-
 const Surroundings& CellTree::fine_around(const Tile& tile) const {
   return tile.fine().get([&] {
-    const TilePlace& place = tile.place();
-    Surroundings s;
-    if (place.parent != nullptr) {
-      const SlotPath path = path_of(place.slot);
-      s = refined(fine_, fine_around_octant(*place.parent, path.outer), path.inner, place.center, place.half,
-                  largest_group);
-    } else {
-      s.near = fine_.split(sources_, sources_.roots(), place.center, place.half, largest_group, s.far);
-    }
-    return std::make_unique<const Surroundings>(std::move(s));
+    const TilePlace& p = tile.place();
+    const bool is_first = p.parent == nullptr;
+    const SlotPath path = path_of(p.slot);
+    const Surroundings& parent = is_first ? above_.fine_around(*p.above) : fine_around_octant(*p.parent, path.outer);
+    return std::make_unique<const Surroundings>(
+        refined(fine_, sources_, &parent, is_first ? p.slot : path.inner, p.center, p.half, largest_fine_group));
   });
 }
 
 const Surroundings& CellTree::fine_around_octant(const Tile& tile, int octant) const {
   return tile.fine_of_octant(octant).get([&] {
     const TilePlace& p = tile.place();
-    return std::make_unique<const Surroundings>(
-        refined(fine_, fine_around(tile), octant, octant_center(p.center, p.half, octant), p.half / 2, largest_group));
+    return std::make_unique<const Surroundings>(refined(fine_, sources_, &fine_around(tile), octant,
+                                                        octant_center(p.center, p.half, octant), p.half / 2,
+                                                        largest_fine_group));
   });
 }
 
 Surroundings CellTree::surroundings(const Cell& cell) const {
   const SlotPath path = path_of(cell.slot);
-  if (cell.large) return refined(fine_, fine_around(*cell.tile), path.outer, cell.center, cell.half, open_all);
-  return refined(fine_, fine_around_octant(*cell.tile, path.outer), path.inner, cell.center, cell.half, open_all);
+  if (cell.large)
+    return refined(fine_, sources_, &fine_around(*cell.tile), path.outer, cell.center, cell.half, open_all);
+  return refined(fine_, sources_, &fine_around_octant(*cell.tile, path.outer), path.inner, cell.center, cell.half,
+                 open_all);
 }
 
 // The list of a tile is short enough to be asked for each of its cells.
@@ -266,7 +266,7 @@ std::vector<CellTree::Cell> CellTree::cells() const {
 }
 
 CellTree::Size CellTree::size() const {
-  Size s{.cells = 0, .bytes = places_.capacity() * (sizeof(TilePlace) + sizeof(Lazy<Tile>))};
+  Size s{.cells = 0, .bytes = places_.capacity() * (sizeof(TilePlace) + sizeof(Lazy<Tile>)) + above_.bytes()};
   for_each_tile(false, [&](const Tile& t) {
     s.cells += static_cast<std::size_t>(std::popcount(t.content().cells));
     s.bytes += t.bytes();

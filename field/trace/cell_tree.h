@@ -14,6 +14,7 @@
 #include "field/trace/cell_settings.h"
 #include "field/trace/divider.h"
 #include "field/trace/tile.h"
+#include "field/trace/upper_cubes.h"
 
 namespace marrow {
 
@@ -67,18 +68,17 @@ class CellTree {
   Size size() const;
 
  private:
+  struct Branch;
   struct Level;
   void place_tiles();
   bool has_too_many_tiles() const;
   bool is_small_enough(const Divider::Octant&, const Vec3d& center, double half, int level) const;
   bool is_hardly_met(const Divider::Octant&, const Vec3d& center, double half) const;
-  void expand(const CubeView&, int depth, Level& out) const;
+  void expand(const Branch&, int depth, Level& out) const;
   std::unique_ptr<const Tile> divide(const TilePlace&) const;
   Surroundings coarse_around(const TilePlace&) const;
   const Surroundings& fine_around(const Tile&) const;
   const Surroundings& fine_around_octant(const Tile&, int octant) const;
-  Surroundings refined(const NearFar&, const Surroundings&, int octant, const Vec3d& center, double half,
-                       double keep) const;
 
   const SourceTree& sources_;
   const NearFar& coarse_;
@@ -86,6 +86,7 @@ class CellTree {
   Divider divider_;
   CellTreeSettings settings_;
   double most_thinnest_, most_thinnest_if_hardly_met_;
+  UpperCubes above_;
   std::vector<TilePlace> places_;
   std::unique_ptr<Lazy<Tile>[]> tiles_;
 };

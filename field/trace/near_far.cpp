@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "field/math/elementary.h"
+#include "field/trace/ask_for.h"
 #include "field/trace/cube_remainder.h"
 #include "field/trace/near_groups.h"
 #include "field/trace/source_groups.h"
@@ -208,9 +209,13 @@ std::vector<SourceRef> NearFar::split(const SourceTree& tree, std::span<const So
   std::vector<PieceIndex> pieces;
   FarGroups groups{center, half, far};
   const Slight slight = keep == open_all ? Slight::LeftOut : Slight::Kept;
+  constexpr std::size_t ahead = 8;  // nodes of large trees are in no cache
   while (!open.empty()) {
     const SourceRef here = open.back();
     open.pop_back();
+    if (open.size() >= ahead)
+      if (const SourceRef soon = open[open.size() - ahead]; !soon.is_piece())
+        ask_for_lines<2>(&tree.node(soon.index()));
     if (here.is_piece()) {
       pieces.push_back(here.index());
       continue;
@@ -229,8 +234,9 @@ std::vector<SourceRef> NearFar::split(const SourceTree& tree, std::span<const So
     }
   }
   fold(groups);
-  for (const PieceIndex i : split(tree.pieces(), pieces, center, half, far, slight))
-    near.push_back(SourceRef::piece(i));
+  const std::vector<PieceIndex> near_pieces = split(tree.pieces(), pieces, center, half, far, slight);
+  near.reserve(near.size() + near_pieces.size());  // lists are kept
+  for (const PieceIndex i : near_pieces) near.push_back(SourceRef::piece(i));
   return near;
 }
 

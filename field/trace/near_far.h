@@ -1,6 +1,7 @@
 // Which sources a cube must list, and which it may fold into its far field.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,6 +22,8 @@ using PieceIndex = std::uint32_t;
 struct Surroundings {
   std::vector<SourceRef> near;
   FarField far;
+
+  std::size_t bytes() const { return sizeof(*this) + near.capacity() * sizeof(SourceRef); }
 };
 
 /// Whether near sources that hardly count in a cube are left out of its list.

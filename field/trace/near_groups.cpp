@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "field/math/elementary.h"
+#include "field/trace/ask_for.h"
 
 namespace marrow {
 
@@ -26,8 +27,11 @@ NearGroups::NearGroups(std::span<const Piece> pieces, std::span<const std::uint3
                        const Vec3d& center, double half)
     : center_(center), scale_(1 / half), used_(lanes) {
   groups_.reserve(near.size() / lanes + 1);
-  for (const std::uint32_t i : near)
-    if (pieces[i].is_point() == points) add(pieces[i]);
+  constexpr std::size_t ahead = 8;  // pieces of large blends are in no cache
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (i + ahead < near.size()) ask_for_lines<3>(&pieces[near[i + ahead]]);
+    if (pieces[near[i]].is_point() == points) add(pieces[near[i]]);
+  }
   if (!points) curve_groups_ = count();
 }
 

@@ -44,7 +44,7 @@ std::size_t Tile::bytes() const {
       sizeof(Tile) + coarse_.near.capacity() * sizeof(SourceRef) +
       static_cast<std::size_t>(std::popcount(content_.cells) + std::popcount(content_.tiles)) * sizeof(void*);
   const auto add = [&](const Lazy<Surroundings>& lazy) {
-    if (const Surroundings* s = lazy.peek()) sum += sizeof(Surroundings) + s->near.capacity() * sizeof(SourceRef);
+    if (const Surroundings* s = lazy.peek()) sum += s->bytes();
   };
   add(fine_);
   if (const StrandView* s = strands_.peek())

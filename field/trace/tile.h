@@ -18,14 +18,16 @@ namespace marrow {
 
 class Block;
 struct StrandView;
+struct UpperCube;
 
 /// Where a tile is and what it belongs to.
 struct TilePlace {
   Vec3d center;
   double half = 0;
   int level = 0;                       ///< halvings since the root
-  int slot = 0;                        ///< in the parent
+  int slot = 0;                        ///< in the parent; of a tile of the first level its octant of `above`
   const class Tile* parent = nullptr;  ///< null: a tile of the first level
+  const UpperCube* above = nullptr;    ///< of a tile of the first level
 
   Box3 box() const {
     const Vec3d h{half, half, half};

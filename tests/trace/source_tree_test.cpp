@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "field/skeleton/skeletons.h"
+#include "field/trace/upper_cubes.h"
 #include "tests/trace/stage.h"
 
 namespace marrow::test {
@@ -124,6 +125,29 @@ FieldValue value_of(const FarField& far, const Vec3d& x) {
   return v;
 }
 
+// All pieces but those that are listed, by themselves or in a group.
+std::vector<bool> pieces_without(const SourceTree& tree, const std::vector<SourceRef>& near) {
+  std::vector<bool> left(tree.pieces().size(), true);
+  for (const SourceRef ref : near) {
+    const bool piece = ref.is_piece();
+    const std::uint32_t begin = piece ? ref.index() : tree.node(ref.index()).begin,
+                        end = piece ? begin + 1 : tree.node(ref.index()).end;
+    for (std::uint32_t i = begin; i < end; ++i) left[i] = false;
+  }
+  return left;
+}
+
+FieldValue sum_of(const SourceTree& tree, const std::vector<bool>& pieces, const Vec3d& p, int degree) {
+  FieldValue sum;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (!pieces[i]) continue;
+    const FieldValue v = exact(tree.pieces()[i], p, degree);
+    sum.f += v.f;
+    sum.g += v.g;
+  }
+  return sum;
+}
+
 // What a split folds away is what it leaves out of the list, to the error it states; groups and pieces alike.
 TEST(SourceTree, SplitsAreWithinTheirStatedErrors) {
   constexpr int far_degrees[] = {high_far_degree, low_far_degree, highest_far_degree};
@@ -138,25 +162,13 @@ TEST(SourceTree, SplitsAreWithinTheirStatedErrors) {
     const double half = exp(random.between(-4, 1));
     FarField far;
     const auto near = near_far.split(tree, tree.roots(), center, half, round % 3 ? 0.5 : -1, far);
-    std::vector<bool> is_far(tree.pieces().size(), true);
-    for (const SourceRef ref : near) {
-      const bool piece = ref.is_piece();
-      kept_groups += !piece;
-      const std::uint32_t begin = piece ? ref.index() : tree.node(ref.index()).begin,
-                          end = piece ? begin + 1 : tree.node(ref.index()).end;
-      for (std::uint32_t i = begin; i < end; ++i) is_far[i] = false;
-    }
+    for (const SourceRef ref : near) kept_groups += !ref.is_piece();
+    const std::vector<bool> is_far = pieces_without(tree, near);
     for (int k = 0; k < 10; ++k) {
       Vec3d x = random.vector(1);
       if (k % 2 == 0) x = x / max_component(abs(x));  // on a face
-      FieldValue sum;
-      for (std::size_t i = 0; i < is_far.size(); ++i) {
-        if (!is_far[i]) continue;
-        folded += k == 0;
-        const FieldValue v = exact(tree.pieces()[i], center + x * half, n);
-        sum.f += v.f;
-        sum.g += v.g;
-      }
+      const FieldValue sum = sum_of(tree, is_far, center + x * half, n);
+      if (k == 0) folded += static_cast<std::size_t>(std::count(is_far.begin(), is_far.end(), true));
       const FieldValue found = value_of(far, x);
       const double f_error = std::fabs(found.f - sum.f), g_error = length(found.g - sum.g);
       ASSERT_LE(f_error, far.f_error) << "n=" << n << " half=" << half;
@@ -169,6 +181,48 @@ TEST(SourceTree, SplitsAreWithinTheirStatedErrors) {
             << f_use << ", grad_S f " << g_use << '\n';
   EXPECT_GT(folded, 5000U);
   EXPECT_GT(kept_groups, 50U);
+}
+
+// Down to a tile, whose errors are then no more than half as large again as if it had asked all sources itself.
+TEST(UpperCubes, HandDownWhatTheyFold) {
+  Random random(64);
+  double f_use = 0, ratio = 0;
+  for (int round = 0; round < 60; ++round) {
+    const int n = random.whole(3, 7);
+    const SourceTree tree = tree_of(clumps(random, n, 400));
+    const BlockKernels& kernels = *block_kernels("");
+    const NearFar coarse(n, budget_of(2e-2, n), kernels, high_far_degree),
+        fine(n, budget_of(1e-5, n), kernels, round % 2 ? high_far_degree : highest_far_degree);
+    UpperCubes above(tree, coarse, fine, kernels);
+    CubeView view{random.vector(8), exp(random.between(1, 3)), {}};
+    const UpperCube* cube = &above.add(view, nullptr, 0);
+    int octant = random.whole(0, 7);
+    for (int level = random.whole(0, 4); level >= 0; --level) {
+      view = {octant_center(view.center, view.half, octant), view.half / 2, {}};
+      if (level > 0) cube = &above.add(view, cube, octant);
+      if (level > 0) octant = random.whole(0, 7);
+    }
+    const auto seen_by = [&](const NearFar& precision, const Surroundings& parent) {
+      return refined(precision, tree, &parent, octant, view.center, view.half, largest_fine_group);
+    };
+    for (const Surroundings& found :
+         {seen_by(coarse, above.coarse_around(*cube)), seen_by(fine, above.fine_around(*cube))}) {
+      const std::vector<bool> folded = pieces_without(tree, found.near);
+      for (int k = 0; k < 5; ++k) {
+        const Vec3d x = random.vector(1);
+        const FieldValue exact_sum = sum_of(tree, folded, view.center + x * view.half, n), sum = value_of(found.far, x);
+        ASSERT_LE(std::fabs(sum.f - exact_sum.f), found.far.f_error) << "n=" << n << " half=" << view.half;
+        ASSERT_LE(length(sum.g - exact_sum.g), found.far.gradient_error) << "n=" << n << " half=" << view.half;
+        if (found.far.f_error > 0) f_use = std::max(f_use, std::fabs(sum.f - exact_sum.f) / found.far.f_error);
+      }
+    }
+    const double alone = refined(fine, tree, nullptr, 0, view.center, view.half, largest_fine_group).far.f_error;
+    const double inherited = seen_by(fine, above.fine_around(*cube)).far.f_error;
+    if (alone > 10 * fine.budget().field) ratio = std::max(ratio, inherited / alone);
+  }
+  std::cout << "  largest error over bound: f " << f_use << "; bound over that of a tile by itself: " << ratio << '\n';
+  EXPECT_GT(ratio, 0);
+  EXPECT_LT(ratio, 1.5);
 }
 
 // Without groups each cube would look at every source.
