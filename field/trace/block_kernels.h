@@ -147,7 +147,7 @@ struct StrandShares {
 };
 inline constexpr int floats_per_strand = 20 * lanes;  ///< of the memory that it takes
 
-inline constexpr int most_far_moments = 224;  ///< monomials of degree 9, in eights
+inline constexpr int most_far_moments = 224;  ///< monomials to degree 9 (far_field.h), in eights
 inline constexpr int most_far_nodes = 5;
 
 inline constexpr int floats_per_piece_group = 13 * lanes;
@@ -196,7 +196,7 @@ struct FarQuery {
 /// Sums over the pieces that are far: their errors, their field and |G| at the cube's centre at most, their moments.
 struct FarSums {
   float f_error, g_error, field, gradient;
-  float f[most_far_moments], potential[most_far_moments];  ///< as far_moments() finds them
+  float f[most_far_moments], potential[most_far_moments];  ///< as far_moments() finds them, in units of the cube
 };
 
 inline constexpr int floats_per_strand_group = 7 * lanes;  ///< xyz, weight, direction xyz

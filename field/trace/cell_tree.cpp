@@ -85,7 +85,7 @@ void CellTree::place_tiles() {
   above_.clear();
   std::vector<Branch> level{{divider_.root(), 0, nullptr}};
   for (int depth = 1; !level.empty(); ++depth) {
-    for (Branch& b : level) b.cube = &above_.add(b.view, b.cube, b.octant);
+    for (Branch& b : level) b.cube = &above_.add(b.view.center, b.view.half, b.cube, b.octant);
     std::vector<Level> expansions(level.size());
     tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) { expand(level[i], depth, expansions[i]); });
     level.clear();

@@ -10,10 +10,6 @@
 namespace marrow {
 namespace {
 
-// Of the half side: how large a group may be that bounds treat as one. Smaller groups bound more tightly, in longer
-// lists: at 0.2 there are 2 % fewer cells, and dividing takes 1.4 times as long (10^6 segments of neurons).
-constexpr double largest_group = 0.5;
-
 // A thread beside a limb hardly shows in the mean radius around it. In a cell of some 300 thread radii positions in
 // float moved the field by 3e-4; cells of the size of 20 radii times CellTreeSettings::cell_size move it by 1e-6 n.
 constexpr double most_over_thinnest = 20;
@@ -68,7 +64,7 @@ CubeView Divider::root() const {
   const double grid = std::ldexp(1.0, std::ilogb(needed) - 10);
   root.half = std::ceil(needed / grid + 1) * grid;
   for (std::size_t i = 0; i < 3; ++i) root.center[i] = std::floor(box.center()[i] / grid + 0.5) * grid;
-  root.sources.near = coarse_.split(tree_, tree_.roots(), root.center, root.half, largest_group, root.sources.far);
+  root.sources = refined(coarse_, tree_, nullptr, 0, root.center, root.half, largest_coarse_group);
   return root;
 }
 
@@ -93,10 +89,9 @@ std::array<Divider::Octant, 8> Divider::octants(const CubeView& parent) const {
 }
 
 CubeView Divider::child(const CubeView& parent, int octant) const {
-  CubeView b{.center = octant_center(parent.center, parent.half, octant), .half = parent.half / 2, .sources = {}};
-  b.sources.far = parent.sources.far.of_child(octant);
-  b.sources.near = coarse_.split(tree_, parent.sources.near, b.center, b.half, largest_group, b.sources.far);
-  return b;
+  const Vec3d center = octant_center(parent.center, parent.half, octant);
+  const double half = parent.half / 2;
+  return {center, half, refined(coarse_, tree_, &parent.sources, octant, center, half, largest_coarse_group)};
 }
 
 }  // namespace marrow

@@ -12,6 +12,11 @@
 
 namespace marrow {
 
+/// Of the half side of a cube: groups up to this size are passed on unopened to the cubes inside it, and bounds treat
+/// them as one. Smaller groups bound more tightly, in longer lists: at 0.2 there are 2 % fewer cells, and dividing
+/// takes 1.4 times as long (10^6 segments of neurons).
+inline constexpr double largest_coarse_group = 0.5;
+
 Vec3d octant_center(const Vec3d& center, double half, int octant);
 
 /// A cube and the sources as it sees them.

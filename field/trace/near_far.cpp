@@ -240,4 +240,12 @@ std::vector<SourceRef> NearFar::split(const SourceTree& tree, std::span<const So
   return near;
 }
 
+Surroundings refined(const NearFar& precision, const SourceTree& sources, const Surroundings* parent, int octant,
+                     const Vec3d& center, double half, double keep) {
+  Surroundings s;
+  if (parent != nullptr) s.far = parent->far.of_child(octant);
+  s.near = precision.split(sources, parent != nullptr ? parent->near : sources.roots(), center, half, keep, s.far);
+  return s;
+}
+
 }  // namespace marrow

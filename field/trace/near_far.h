@@ -87,6 +87,11 @@ class NearFar {
   std::vector<Remainders> curve_, point_;  // psi at ratios i / table_size * largest_ratio
 };
 
+/// What an octant of a cube sees, given what the cube sees; without a parent: what a cube sees of all sources. `keep`
+/// as in NearFar::split(); `octant` has a bit for each axis.
+Surroundings refined(const NearFar&, const SourceTree&, const Surroundings* parent, int octant, const Vec3d& center,
+                     double half, double keep);
+
 /// Emits the quadrature nodes of a piece in the coordinates of a cube.
 void add_nodes(const Piece&, int count, const Vec3d& center, double half, int degree, SourceGroups& out);
 

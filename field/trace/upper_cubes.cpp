@@ -2,6 +2,8 @@
 
 #include <memory>
 
+#include "field/trace/divider.h"
+
 namespace marrow {
 namespace {
 
@@ -17,36 +19,29 @@ NearFar closer(const NearFar& fine, const BlockKernels& kernels) {
 
 }  // namespace
 
-Surroundings refined(const NearFar& precision, const SourceTree& sources, const Surroundings* parent, int octant,
-                     const Vec3d& center, double half, double keep) {
-  Surroundings s;
-  if (parent != nullptr) s.far = parent->far.of_child(octant);
-  s.near = precision.split(sources, parent != nullptr ? parent->near : sources.roots(), center, half, keep, s.far);
-  return s;
-}
-
 UpperCubes::UpperCubes(const SourceTree& sources, const NearFar& coarse, const NearFar& fine,
                        const BlockKernels& kernels)
     : sources_(sources), coarse_(coarse), fine_(closer(fine, kernels)) {}
 
-const UpperCube& UpperCubes::add(const CubeView& view, const UpperCube* parent, int octant) {
-  return cubes_.emplace_back(view.center, view.half, parent, octant);
+const UpperCube& UpperCubes::add(const Vec3d& center, double half, const UpperCube* parent, int octant) {
+  return cubes_.emplace_back(center, half, parent, octant);
+}
+
+const Surroundings& UpperCubes::around(const UpperCube& cube, Seen seen, const NearFar& precision,
+                                       double largest_group) const {
+  return (cube.*seen).get([&] {
+    const auto* const parent = cube.parent != nullptr ? &around(*cube.parent, seen, precision, largest_group) : nullptr;
+    return std::make_unique<const Surroundings>(
+        refined(precision, sources_, parent, cube.octant, cube.center, cube.half, largest_group));
+  });
 }
 
 const Surroundings& UpperCubes::coarse_around(const UpperCube& cube) const {
-  return cube.coarse.get([&] {
-    const auto* const parent = cube.parent != nullptr ? &coarse_around(*cube.parent) : nullptr;
-    return std::make_unique<const Surroundings>(
-        refined(coarse_, sources_, parent, cube.octant, cube.center, cube.half, largest_coarse_group));
-  });
+  return around(cube, &UpperCube::coarse, coarse_, largest_coarse_group);
 }
 
 const Surroundings& UpperCubes::fine_around(const UpperCube& cube) const {
-  return cube.fine.get([&] {
-    const auto* const parent = cube.parent != nullptr ? &fine_around(*cube.parent) : nullptr;
-    return std::make_unique<const Surroundings>(
-        refined(fine_, sources_, parent, cube.octant, cube.center, cube.half, largest_fine_group));
-  });
+  return around(cube, &UpperCube::fine, fine_, largest_fine_group);
 }
 
 std::size_t UpperCubes::bytes() const {

@@ -4,18 +4,14 @@
 #include <cstddef>
 #include <deque>
 
-#include "field/trace/divider.h"
+#include "field/math/vec3.h"
 #include "field/trace/lazy.h"
 #include "field/trace/near_far.h"
 
 namespace marrow {
 
-/// Of the half side of a cube: groups up to this size are passed on unopened to the cubes inside it.
-inline constexpr double largest_fine_group = 0.25, largest_coarse_group = 0.5;
-
-/// What an octant of a cube sees; without a parent: what a cube sees of all sources.
-Surroundings refined(const NearFar&, const SourceTree&, const Surroundings* parent, int octant, const Vec3d& center,
-                     double half, double keep);
+/// As largest_coarse_group, in fine lists.
+inline constexpr double largest_fine_group = 0.25;
 
 /// A cube whose octants are such cubes, tiles of the first level, or hold nothing.
 struct UpperCube {
@@ -32,15 +28,19 @@ class UpperCubes {
  public:
   UpperCubes(const SourceTree&, const NearFar& coarse, const NearFar& fine, const BlockKernels&);
 
-  /// The result stays where it is. `parent`: null for the root.
-  const UpperCube& add(const CubeView&, const UpperCube* parent, int octant);
+  /// The result stays where it is, until clear(). `parent`: null for the root.
+  const UpperCube& add(const Vec3d& center, double half, const UpperCube* parent, int octant);
   void clear() { cubes_.clear(); }
 
+  /// To the errors of `coarse`, and to an eighth of those of `fine`.
   const Surroundings& coarse_around(const UpperCube&) const;
   const Surroundings& fine_around(const UpperCube&) const;
   std::size_t bytes() const;
 
  private:
+  using Seen = Lazy<Surroundings> UpperCube::*;
+  const Surroundings& around(const UpperCube&, Seen, const NearFar&, double largest_group) const;
+
   const SourceTree& sources_;
   const NearFar& coarse_;
   NearFar fine_;  // to a part of the errors of tiles

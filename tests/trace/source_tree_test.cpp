@@ -194,29 +194,35 @@ TEST(UpperCubes, HandDownWhatTheyFold) {
     const NearFar coarse(n, budget_of(2e-2, n), kernels, high_far_degree),
         fine(n, budget_of(1e-5, n), kernels, round % 2 ? high_far_degree : highest_far_degree);
     UpperCubes above(tree, coarse, fine, kernels);
-    CubeView view{random.vector(8), exp(random.between(1, 3)), {}};
-    const UpperCube* cube = &above.add(view, nullptr, 0);
-    int octant = random.whole(0, 7);
-    for (int level = random.whole(0, 4); level >= 0; --level) {
-      view = {octant_center(view.center, view.half, octant), view.half / 2, {}};
-      if (level > 0) cube = &above.add(view, cube, octant);
-      if (level > 0) octant = random.whole(0, 7);
+    Vec3d center = random.vector(8);
+    double half = exp(random.between(1, 3));
+    const UpperCube* cube = &above.add(center, half, nullptr, 0);
+    int octant = 0;
+    const auto enter_an_octant = [&] {
+      octant = random.whole(0, 7);
+      center = octant_center(center, half, octant);
+      half /= 2;
+    };
+    for (int level = random.whole(0, 4); level > 0; --level) {
+      enter_an_octant();
+      cube = &above.add(center, half, cube, octant);
     }
+    enter_an_octant();
     const auto seen_by = [&](const NearFar& precision, const Surroundings& parent) {
-      return refined(precision, tree, &parent, octant, view.center, view.half, largest_fine_group);
+      return refined(precision, tree, &parent, octant, center, half, largest_fine_group);
     };
     for (const Surroundings& found :
          {seen_by(coarse, above.coarse_around(*cube)), seen_by(fine, above.fine_around(*cube))}) {
       const std::vector<bool> folded = pieces_without(tree, found.near);
       for (int k = 0; k < 5; ++k) {
         const Vec3d x = random.vector(1);
-        const FieldValue exact_sum = sum_of(tree, folded, view.center + x * view.half, n), sum = value_of(found.far, x);
-        ASSERT_LE(std::fabs(sum.f - exact_sum.f), found.far.f_error) << "n=" << n << " half=" << view.half;
-        ASSERT_LE(length(sum.g - exact_sum.g), found.far.gradient_error) << "n=" << n << " half=" << view.half;
+        const FieldValue exact_sum = sum_of(tree, folded, center + x * half, n), sum = value_of(found.far, x);
+        ASSERT_LE(std::fabs(sum.f - exact_sum.f), found.far.f_error) << "n=" << n << " half=" << half;
+        ASSERT_LE(length(sum.g - exact_sum.g), found.far.gradient_error) << "n=" << n << " half=" << half;
         if (found.far.f_error > 0) f_use = std::max(f_use, std::fabs(sum.f - exact_sum.f) / found.far.f_error);
       }
     }
-    const double alone = refined(fine, tree, nullptr, 0, view.center, view.half, largest_fine_group).far.f_error;
+    const double alone = refined(fine, tree, nullptr, 0, center, half, largest_fine_group).far.f_error;
     const double inherited = seen_by(fine, above.fine_around(*cube)).far.f_error;
     if (alone > 10 * fine.budget().field) ratio = std::max(ratio, inherited / alone);
   }
