@@ -145,7 +145,7 @@ struct StrandShares {
   alignas(64) float share[lanes];
   alignas(64) float slope[3][lanes];  ///< its derivatives by x, y, z
 };
-inline constexpr int floats_per_strand = 20 * lanes;  ///< of the memory that it takes
+inline constexpr int floats_per_strand = 19 * lanes;  ///< of the memory that it takes
 
 inline constexpr int most_far_moments = 224;  ///< monomials to degree 9 (far_field.h), in eights
 inline constexpr int most_far_nodes = 5;

@@ -21,11 +21,12 @@ inline constexpr int floats_per_patch = sizeof(SharePatch) / sizeof(float);
 /// need of a patch is here, so that they find it where they find out that there is one.
 struct alignas(32) SharePart {
   /// Of the patch; one more than that of the first of eight parts; or 0 where neither is made yet. All else is good
-  /// once it is set, and of a patch only.
+  /// once it is set: of a patch, but for the last.
   std::uintptr_t address = 0;
   float half = 0.5F;  ///< of the part
   float level = 0;    ///< in the part the share is within `bent` of level + slope . (x - center)
-  float slope[3] = {0, 0, 0}, bent = 0;
+  float slope[3] = {0, 0, 0};
+  float bent = 0;  ///< of eight parts: what one patch would be off, 0 where none was tried
 
   static constexpr std::uintptr_t divided = 1;
   /// Of the first octant of a path to a slot, which is the octants of three halvings, the largest cube's in the highest

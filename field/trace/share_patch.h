@@ -2,8 +2,8 @@
 //
 // What strands.h tells of a place is fitted by polynomials, and these are what is traced: their bounds along a ray are
 // exact, they cost little, and the coarse level can use lines beside them. The parts are octants of the block, or
-// octants of those down to its slots where the fit is not good enough; each is made when the first ray comes by, and is
-// a function of the block alone.
+// octants of those down to its slots where the fit is not good enough, or would not be by what that of the larger part
+// is off; each is made when the first ray comes by, and is a function of the block alone.
 #pragma once
 
 #include <array>
@@ -62,8 +62,13 @@ class SharePatches {
   static Eight* parts_at(std::uintptr_t address) { return reinterpret_cast<Eight*>(address - SharePart::divided); }
   static void free_all(const Eight&);
 
-  std::uintptr_t make(const BlockKernels&, int degree, const BlockLevel& strands, int path, int shift,
-                      SharePart& to) const;
+  // These return the address that the part then has. `residual`: SharePart::bent.
+  std::uintptr_t divide(float residual, SharePart& to) const;
+  // Makes a patch, or divides the part where one does not do.
+  std::uintptr_t fit(const BlockKernels&, int degree, const BlockLevel& strands, int path, int shift,
+                     SharePart& to) const;
+  // Whether no octant has a patch that does, where that of the whole part is off by so much.
+  static bool is_far_off(float residual);
   template <class T>
   std::uintptr_t keep(const SharePart& made, std::unique_ptr<T> owned, SharePart& to) const;
 
@@ -76,12 +81,15 @@ class SharePatches {
 template <class Strands>
 const SharePart& SharePatches::at(int path, const BlockKernels& kernels, int degree, const Strands& strands) const {
   Eight* eight = &octants_;
+  float off = 0;  // of the part around
   for (int shift = SharePart::root_shift;; shift -= 3) {
     SharePart& part = eight->parts[static_cast<std::size_t>(path >> shift & 7)];
     std::uintptr_t address = address_of(part);
-    if (address == 0) address = make(kernels, degree, strands(), path, shift, part);
+    if (address == 0)
+      address = shift > 0 && is_far_off(off) ? divide(0, part) : fit(kernels, degree, strands(), path, shift, part);
     if ((address & SharePart::divided) == 0) return part;
     eight = parts_at(address);
+    off = part.bent;
   }
 }
 

@@ -41,38 +41,60 @@ struct Places16 {
   }
 };
 
-// One strand: f and its direction u, of length 1 or 0; then the derivatives of N = sum f_i f_j (u_i . u_j)^8 by them.
+// One strand: f_i and its direction u_i, of length 1 or 0. N = sum f_i f_j (u_i . u_j)^8 over pairs has the derivatives
+// u_i . turn_i by f_i and 8 f_i turn_i by u_i, where turn_i is the sum of f_j (u_i . u_j)^7 u_j over all others.
 struct Strand16 {
   Slopes16 f, u[3];
-  V16 by_f{}, by_u[3] = {};
+  V16 turn[3] = {};
+
+  V16 along(const V16 (&v)[3]) const { return u[0].value * v[0] + u[1].value * v[1] + u[2].value * v[2]; }
 };
 static_assert(sizeof(Strand16) == floats_per_strand * sizeof(float));
 
-// Adds f and sum f_s u_s over the groups of a strand to s.
+// Sources of one direction: their f, and what it changes by but for a factor of -m.
+struct SameDirection {
+  float u[3];
+  V16 value{}, slope[3] = {};
+
+  template <int Exponent>
+  void add(const float* source, int exponent, const Places16& at) {
+    const V16 d[3] = {at.p[0] - source[0], at.p[1] - source[16], at.p[2] - source[32]};
+    const V16 inv = 1.0F / (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    const V16 w = field_of<Exponent>(splat(source[48]), splat(source[64]), inv, exponent), w2 = w * inv;
+    value += w;
+    for (int e = 0; e < 3; ++e) slope[e] += w2 * d[e];
+  }
+
+  // To f and sum f_s u_s.
+  void add_to(float m, Slopes16 (&s)[4]) const {
+    s[0].value += value;
+    for (int j = 0; j < 3; ++j) s[1 + j].value += value * u[j];
+    for (int e = 0; e < 3; ++e) {
+      const V16 change = m * slope[e];
+      s[0].slope[e] -= change;
+      for (int j = 0; j < 3; ++j) s[1 + j].slope[e] -= change * u[j];
+    }
+  }
+};
+
+// Adds f and sum f_s u_s over the groups of a strand to s. Sources of a segment follow each other, and a direction
+// counts once for all of them.
 template <int Exponent>
 inline void add_strand_groups(const float* group, const float* direction, int groups, int exponent, const Places16& at,
                               Slopes16 (&s)[4]) {
-  V16 value[4] = {}, slope[3][4] = {};
+  const auto m = static_cast<float>(exponent);
+  SameDirection same{.u = {}};
   for (int k = 0; k < groups; ++k, group += floats_per_group, direction += 3 * lanes)
     for (int i = 0; i < lanes; ++i) {
       if (!(group[48 + i] > 0)) continue;  // not used
-      const V16 d[3] = {at.p[0] - group[i], at.p[1] - group[16 + i], at.p[2] - group[32 + i]};
-      const V16 inv = 1.0F / (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-      const V16 w = field_of<Exponent>(splat(group[48 + i]), splat(group[64 + i]), inv, exponent), w2 = w * inv;
       const float u[3] = {direction[i], direction[16 + i], direction[32 + i]};
-      value[0] += w;
-      for (int j = 0; j < 3; ++j) value[1 + j] += w * u[j];
-      for (int e = 0; e < 3; ++e) {
-        const V16 change = w2 * d[e];
-        slope[e][0] += change;
-        for (int j = 0; j < 3; ++j) slope[e][1 + j] += change * u[j];
+      if (u[0] != same.u[0] || u[1] != same.u[1] || u[2] != same.u[2]) {
+        same.add_to(m, s);
+        same = {.u = {u[0], u[1], u[2]}};
       }
+      same.add<Exponent>(group + i, exponent, at);
     }
-  const float m = static_cast<float>(exponent);
-  for (int j = 0; j < 4; ++j) {
-    s[j].value += value[j];
-    for (int e = 0; e < 3; ++e) s[j].slope[e] -= m * slope[e][j];
-  }
+  same.add_to(m, s);
 }
 
 inline void set_strand(const Slopes16 (&s)[4], Strand16& out) {
@@ -105,58 +127,50 @@ inline void find_strands(const FieldLevel& level, int exponent, const Places16& 
   }
 }
 
-// g^7 and g^8
-struct Powers {
-  V16 seventh, eighth;
-  explicit Powers(const V16& g) {
-    const V16 g2 = g * g, g4 = g2 * g2;
-    seventh = g4 * g2 * g;
-    eighth = g4 * g4;
-  }
-};
+inline V16 seventh_power(const V16& g) {
+  const V16 g2 = g * g;
+  return g2 * g2 * g2 * g;
+}
 
-// N over the pairs of strands; returns its value.
+// N over the pairs of strands.
 inline V16 add_pairs(Strand16* strands, int count) {
-  V16 sum{};
   for (int j = 1; j < count; ++j) {
     Strand16& b = strands[j];
     for (int i = 0; i < j; ++i) {
       Strand16& a = strands[i];
-      const Powers g(a.u[0].value * b.u[0].value + a.u[1].value * b.u[1].value + a.u[2].value * b.u[2].value);
-      const V16 ff = a.f.value * b.f.value, steep = ff * (8.0F * g.seventh);
-      sum += ff * g.eighth;
-      a.by_f += b.f.value * g.eighth;
-      b.by_f += a.f.value * g.eighth;
+      const V16 to[3] = {b.u[0].value, b.u[1].value, b.u[2].value};
+      const V16 steep = seventh_power(a.along(to)), of_a = a.f.value * steep, of_b = b.f.value * steep;
       for (int k = 0; k < 3; ++k) {
-        a.by_u[k] += steep * b.u[k].value;
-        b.by_u[k] += steep * a.u[k].value;
+        a.turn[k] += of_b * b.u[k].value;
+        b.turn[k] += of_a * a.u[k].value;
       }
     }
   }
-  return sum;
+  V16 twice{};
+  for (int j = 0; j < count; ++j) twice += strands[j].f.value * strands[j].along(strands[j].turn);
+  return 0.5F * twice;
 }
 
 // N over strands and the axes that stand for the far ones; adds what the weights of the axes change.
 inline void add_axes(const StrandLevel& level, const Places16& at, Strand16* strands, Slopes16& sum) {
   Slopes16 weight[most_axes];
+  V16 on_axis[most_axes] = {};  // sum f_s (u_s . v)^8
   for (int k = 0; k < most_axes; ++k) weight[k] = at.quadratic(level.far + k, tensor_floats);
   for (int j = 0; j < level.count; ++j) {
     Strand16& s = strands[j];
-    Slopes16 with;
-    V16 by_u[3] = {};
+    V16 turn[3] = {};
     for (int k = 0; k < most_axes; ++k) {
       const float v[3] = {level.axes[k], level.axes[tensor_floats + k], level.axes[2 * tensor_floats + k]};
-      const Powers g(s.u[0].value * v[0] + s.u[1].value * v[1] + s.u[2].value * v[2]);
-      with.value += weight[k].value * g.eighth;
-      for (int e = 0; e < 3; ++e) with.slope[e] += weight[k].slope[e] * g.eighth;
-      const V16 steep = weight[k].value * g.seventh;
-      for (int i = 0; i < 3; ++i) by_u[i] += steep * v[i];
+      const V16 g = s.u[0].value * v[0] + s.u[1].value * v[1] + s.u[2].value * v[2], steep = seventh_power(g),
+                of_axis = weight[k].value * steep;
+      on_axis[k] += s.f.value * (steep * g);
+      for (int i = 0; i < 3; ++i) turn[i] += of_axis * v[i];
     }
-    sum.value += s.f.value * with.value;
-    for (int e = 0; e < 3; ++e) sum.slope[e] += s.f.value * with.slope[e];
-    s.by_f += with.value;
-    for (int i = 0; i < 3; ++i) s.by_u[i] += 8.0F * s.f.value * by_u[i];
+    sum.value += s.f.value * s.along(turn);
+    for (int i = 0; i < 3; ++i) s.turn[i] += turn[i];
   }
+  for (int k = 0; k < most_axes; ++k)
+    for (int e = 0; e < 3; ++e) sum.slope[e] += weight[k].slope[e] * on_axis[k];
 }
 
 // sum f_i f_j over pairs, one strand after the other.
@@ -198,10 +212,11 @@ void strand_shares(const FieldLevel& level, int degree, const float (&center)[3]
   for (int j = 0; j < far.count; ++j) {
     const Strand16& s = strands[j];
     pairs.add(s.f);
+    const V16 by_f = s.along(s.turn), by_u = 8.0F * s.f.value;
     for (int e = 0; e < 3; ++e) {
-      V16 turn{};
-      for (int k = 0; k < 3; ++k) turn += s.by_u[k] * s.u[k].slope[e];
-      numerator.slope[e] += s.by_f * s.f.slope[e] + turn;
+      V16 turned{};
+      for (int k = 0; k < 3; ++k) turned += s.turn[k] * s.u[k].slope[e];
+      numerator.slope[e] += by_f * s.f.slope[e] + by_u * turned;
     }
   }
   add_points(level, degree, at, pairs);
