@@ -20,8 +20,9 @@ constexpr int data_count = 4 * strand_places;
 // What a patch that is divided no further may be off, by the residuals of its fit. Where they are below it, the share
 // was off by 3e-5 at most in 4000 hits of hair and of a creature, by 5e-6 in the median.
 constexpr double largest_residual = 4e-5;
-// By so much less is a patch off at half the size, seldom by more: its error is of the fifth degree. Beyond twice that
-// 97 of 100 octants could not do with a patch (10,000 hairs; 99 of 867 limbs').
+// At half the size a patch is off by 2^5 times less, as what it leaves out is of the fifth degree, and seldom by more
+// than twice that. Where a part is off by more, 97 of 100 octants could not do with a patch (10,000 hairs; of 867 limbs
+// 99).
 constexpr double residual_ratio = 64;
 // Places count by their value and by their slopes, which are off by more.
 constexpr double slope_weight = 0.3;
