@@ -284,8 +284,8 @@ std::uintptr_t SharePatches::divide(float residual, SharePart& to) const {
   return keep(part, std::move(parts), to);
 }
 
-std::uintptr_t SharePatches::fit(const BlockKernels& kernels, int degree, const BlockLevel& strands, int path,
-                                 int shift, SharePart& to) const {
+std::uintptr_t SharePatches::fit_or_divide(const BlockKernels& kernels, int degree, const BlockLevel& strands, int path,
+                                           int shift, SharePart& to) const {
   auto made = std::make_unique<SharePatch>();
   SharePatch& patch = *made;
   const Cube cube = cube_of(path, shift);

@@ -65,8 +65,8 @@ class SharePatches {
   // These return the address that the part then has. `residual`: SharePart::bent.
   std::uintptr_t divide(float residual, SharePart& to) const;
   // Makes a patch, or divides the part where one does not do.
-  std::uintptr_t fit(const BlockKernels&, int degree, const BlockLevel& strands, int path, int shift,
-                     SharePart& to) const;
+  std::uintptr_t fit_or_divide(const BlockKernels&, int degree, const BlockLevel& strands, int path, int shift,
+                               SharePart& to) const;
   // Whether no octant has a patch that does, where that of the whole part is off by so much.
   static bool is_far_off(float residual);
   template <class T>
@@ -86,7 +86,8 @@ const SharePart& SharePatches::at(int path, const BlockKernels& kernels, int deg
     SharePart& part = eight->parts[static_cast<std::size_t>(path >> shift & 7)];
     std::uintptr_t address = address_of(part);
     if (address == 0)
-      address = shift > 0 && is_far_off(off) ? divide(0, part) : fit(kernels, degree, strands(), path, shift, part);
+      address =
+          shift > 0 && is_far_off(off) ? divide(0, part) : fit_or_divide(kernels, degree, strands(), path, shift, part);
     if ((address & SharePart::divided) == 0) return part;
     eight = parts_at(address);
     off = part.bent;

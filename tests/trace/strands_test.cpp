@@ -60,8 +60,8 @@ struct StrandsHere {
                                    [this](std::size_t floats) { return buffer.allocate(floats); })) {}
 };
 
-// By the strands themselves, without a fit.
-double summed_share(const Crowd& crowd, const CellTree::Cell& cell, const Vec3d& x) {
+// By the strands themselves, without a fit, at the places of a cube of this half side.
+StrandShares summed_shares(const Crowd& crowd, const CellTree::Cell& cell, const Vec3d& x, float half) {
   const StrandsHere here(crowd, cell);
   const FieldLevel& fine = here.level.level;
   struct alignas(64) Memory {
@@ -70,9 +70,12 @@ double summed_share(const Crowd& crowd, const CellTree::Cell& cell, const Vec3d&
   std::vector<Memory> memory(static_cast<std::size_t>(fine.strands->count));
   const float at[3] = {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)};
   StrandShares shares;
-  crowd.stage.kernels.strand_shares(fine, crowd.stage.field.degree, at, 0,
+  crowd.stage.kernels.strand_shares(fine, crowd.stage.field.degree, at, half,
                                     memory.empty() ? nullptr : memory.front().strand, shares);
-  return static_cast<double>(shares.share[0]);
+  return shares;
+}
+double summed_share(const Crowd& crowd, const CellTree::Cell& cell, const Vec3d& x) {
+  return static_cast<double>(summed_shares(crowd, cell, x, 0).share[0]);
 }
 
 double quantile(std::vector<double> values, double share) {
@@ -127,6 +130,33 @@ TEST(Strands, PatchesTellTheShareOfRandomScenes) {
             << quantile(fit_errors, 0.99) << " (99 %), " << quantile(fit_errors, 1) << ", shares by "
             << quantile(exact_errors, 0.5) << ", " << quantile(exact_errors, 0.99) << ", " << quantile(exact_errors, 1)
             << "\n";
+}
+
+// The faces of a small cube differ as the slopes in its middle say.
+TEST(Strands, SharesChangeByTheirSlopes) {
+  Random random(93);
+  constexpr float half = 0.01F;
+  std::vector<double> errors;
+  for (int scene = 0; scene < 4; ++scene) {
+    const Crowd crowd(random_stranded_scene(random, {scene % 2 == 0 ? 4 : 5, 0}, 6));
+    for (std::size_t i = 0; i < crowd.stage.cells.size(); i += 1 + crowd.stage.cells.size() / 60) {
+      const StrandShares at = summed_shares(crowd, crowd.stage.cells[i], random.vector(1), half);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        double difference = 0, way = 0;
+        for (std::size_t k = 1; k < 7; ++k) {
+          const auto side = static_cast<double>(strand_place[k][axis]);
+          difference += std::copysign(side == 0 ? 0.0 : 1.0, side) * static_cast<double>(at.share[k]);
+          way += std::fabs(side) * static_cast<double>(half);
+        }
+        const auto slope = static_cast<double>(at.slope[axis][0]);
+        errors.push_back(std::fabs(difference / way - slope) / (1 + std::fabs(slope)));
+      }
+    }
+  }
+  std::cout << "  " << errors.size() << " slopes; off by " << quantile(errors, 0.5) << " (median), "
+            << quantile(errors, 0.99) << " (99 %)\n";
+  EXPECT_LT(quantile(errors, 0.5), 1e-5);
+  EXPECT_LT(quantile(errors, 0.99), 1e-4);
 }
 
 }  // namespace

@@ -47,7 +47,11 @@ struct Strand16 {
   Slopes16 f, u[3];
   V16 turn[3] = {};
 
-  V16 along(const V16 (&v)[3]) const { return u[0].value * v[0] + u[1].value * v[1] + u[2].value * v[2]; }
+  // u_i . v, of vectors or of one for all places.
+  template <class T>
+  V16 along(const T (&v)[3]) const {
+    return u[0].value * v[0] + u[1].value * v[1] + u[2].value * v[2];
+  }
 };
 static_assert(sizeof(Strand16) == floats_per_strand * sizeof(float));
 
@@ -127,11 +131,6 @@ inline void find_strands(const FieldLevel& level, int exponent, const Places16& 
   }
 }
 
-inline V16 seventh_power(const V16& g) {
-  const V16 g2 = g * g;
-  return g2 * g2 * g2 * g;
-}
-
 // N over the pairs of strands.
 inline V16 add_pairs(Strand16* strands, int count) {
   for (int j = 1; j < count; ++j) {
@@ -139,7 +138,7 @@ inline V16 add_pairs(Strand16* strands, int count) {
     for (int i = 0; i < j; ++i) {
       Strand16& a = strands[i];
       const V16 to[3] = {b.u[0].value, b.u[1].value, b.u[2].value};
-      const V16 steep = seventh_power(a.along(to)), of_a = a.f.value * steep, of_b = b.f.value * steep;
+      const V16 steep = power_of(a.along(to), 7), of_a = a.f.value * steep, of_b = b.f.value * steep;
       for (int k = 0; k < 3; ++k) {
         a.turn[k] += of_b * b.u[k].value;
         b.turn[k] += of_a * a.u[k].value;
@@ -161,8 +160,7 @@ inline void add_axes(const StrandLevel& level, const Places16& at, Strand16* str
     V16 turn[3] = {};
     for (int k = 0; k < most_axes; ++k) {
       const float v[3] = {level.axes[k], level.axes[tensor_floats + k], level.axes[2 * tensor_floats + k]};
-      const V16 g = s.u[0].value * v[0] + s.u[1].value * v[1] + s.u[2].value * v[2], steep = seventh_power(g),
-                of_axis = weight[k].value * steep;
+      const V16 g = s.along(v), steep = power_of(g, 7), of_axis = weight[k].value * steep;
       on_axis[k] += s.f.value * (steep * g);
       for (int i = 0; i < 3; ++i) turn[i] += of_axis * v[i];
     }
