@@ -158,7 +158,7 @@ Surroundings CellTree::coarse_around(const TilePlace& place) const {
                    largest_coarse_group);
   const SlotPath path = path_of(place.slot);
   Surroundings s;
-  s.far = place.parent->coarse().far.of_child(path.outer).of_child(path.inner);
+  s.far = place.parent->coarse().far.whole().of_child(path.outer).of_child(path.inner);
   s.near = coarse_.split(sources_, place.parent->coarse().near, place.center, place.half, largest_coarse_group, s.far);
   return s;
 }
@@ -182,7 +182,7 @@ bool CellTree::is_small_enough(const Divider::Octant& octant, const Vec3d& cente
 }
 
 std::unique_ptr<const Tile> CellTree::divide(const TilePlace& place) const {
-  const CubeView whole{place.center, place.half, coarse_around(place)};
+  const CubeView whole{place.center, place.half, KeptSurroundings(coarse_around(place))};
   const auto outer = divider_.octants(whole);
   TileContent content;
   for (int i = 0; i < 8; ++i) {
@@ -205,23 +205,24 @@ std::unique_ptr<const Tile> CellTree::divide(const TilePlace& place) const {
   return std::make_unique<const Tile>(place, whole.sources, content);
 }
 
-const Surroundings& CellTree::fine_around(const Tile& tile) const {
+const KeptSurroundings& CellTree::fine_around(const Tile& tile) const {
   return tile.fine().get([&] {
     const TilePlace& p = tile.place();
     const bool is_first = p.parent == nullptr;
     const SlotPath path = path_of(p.slot);
-    const Surroundings& parent = is_first ? above_.fine_around(*p.above) : fine_around_octant(*p.parent, path.outer);
-    return std::make_unique<const Surroundings>(
+    const KeptSurroundings& parent =
+        is_first ? above_.fine_around(*p.above) : fine_around_octant(*p.parent, path.outer);
+    return std::make_unique<const KeptSurroundings>(
         refined(fine_, sources_, &parent, is_first ? p.slot : path.inner, p.center, p.half, largest_fine_group));
   });
 }
 
-const Surroundings& CellTree::fine_around_octant(const Tile& tile, int octant) const {
+const KeptSurroundings& CellTree::fine_around_octant(const Tile& tile, int octant) const {
   return tile.fine_of_octant(octant).get([&] {
     const TilePlace& p = tile.place();
-    return std::make_unique<const Surroundings>(refined(fine_, sources_, &fine_around(tile), octant,
-                                                        octant_center(p.center, p.half, octant), p.half / 2,
-                                                        largest_fine_group));
+    return std::make_unique<const KeptSurroundings>(refined(fine_, sources_, &fine_around(tile), octant,
+                                                            octant_center(p.center, p.half, octant), p.half / 2,
+                                                            largest_fine_group));
   });
 }
 
@@ -236,7 +237,7 @@ Surroundings CellTree::surroundings(const Cell& cell) const {
 // The list of a tile is short enough to be asked for each of its cells.
 Surroundings CellTree::coarse_surroundings(const Cell& cell) const {
   const SlotPath path = path_of(cell.slot);
-  Surroundings s{.near = {}, .far = cell.tile->coarse().far.of_child(path.outer)};
+  Surroundings s{.near = {}, .far = cell.tile->coarse().far.whole().of_child(path.outer)};
   if (!cell.large) s.far = s.far.of_child(path.inner);
   s.near = coarse_.split(sources_, cell.tile->coarse().near, cell.center, cell.half, open_all, s.far);
   return s;

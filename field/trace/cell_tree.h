@@ -77,8 +77,8 @@ class CellTree {
   void expand(const Branch&, int depth, Level& out) const;
   std::unique_ptr<const Tile> divide(const TilePlace&) const;
   Surroundings coarse_around(const TilePlace&) const;
-  const Surroundings& fine_around(const Tile&) const;
-  const Surroundings& fine_around_octant(const Tile&, int octant) const;
+  const KeptSurroundings& fine_around(const Tile&) const;
+  const KeptSurroundings& fine_around_octant(const Tile&, int octant) const;
 
   const SourceTree& sources_;
   const NearFar& coarse_;

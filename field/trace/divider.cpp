@@ -64,7 +64,7 @@ CubeView Divider::root() const {
   const double grid = std::ldexp(1.0, std::ilogb(needed) - 10);
   root.half = std::ceil(needed / grid + 1) * grid;
   for (std::size_t i = 0; i < 3; ++i) root.center[i] = std::floor(box.center()[i] / grid + 0.5) * grid;
-  root.sources = refined(coarse_, tree_, nullptr, 0, root.center, root.half, largest_coarse_group);
+  root.sources = KeptSurroundings(refined(coarse_, tree_, nullptr, 0, root.center, root.half, largest_coarse_group));
   return root;
 }
 
@@ -72,7 +72,7 @@ std::array<Divider::Octant, 8> Divider::octants(const CubeView& parent) const {
   const NearGroups near(tree_, parent.sources.near, parent.center, parent.half);
   std::array<OctantBounds, 8> bounds;
   kernels_.octant_bounds(near.data(), near.curve_groups(), near.point_groups(), degree_, bounds.data());
-  const FarField& far = parent.sources.far;
+  const FarField far = parent.sources.far.whole();
   const FarField::Bounds far_bounds = far.bounds();
   std::array<Octant, 8> result;
   for (int i = 0; i < 8; ++i) {
@@ -91,7 +91,8 @@ std::array<Divider::Octant, 8> Divider::octants(const CubeView& parent) const {
 CubeView Divider::child(const CubeView& parent, int octant) const {
   const Vec3d center = octant_center(parent.center, parent.half, octant);
   const double half = parent.half / 2;
-  return {center, half, refined(coarse_, tree_, &parent.sources, octant, center, half, largest_coarse_group)};
+  return {center, half,
+          KeptSurroundings(refined(coarse_, tree_, &parent.sources, octant, center, half, largest_coarse_group))};
 }
 
 }  // namespace marrow

@@ -23,7 +23,7 @@ Vec3d octant_center(const Vec3d& center, double half, int octant);
 struct CubeView {
   Vec3d center;
   double half = 0;
-  Surroundings sources;
+  KeptSurroundings sources;
 };
 
 /// Immutable; works with a coarse split, whose errors enter the bounds.
@@ -35,8 +35,8 @@ class Divider {
   CubeView root() const;
 
   struct Octant {
-    bool mixed = false;  ///< may hold surface; else its field is below 1 all over it, or above 1
-    double local_radius = 0;
+    bool mixed = false;       ///< may hold surface; else its field is below 1 all over it, or above 1
+    double local_radius = 0;  ///< mean of near pieces, by their field at the centre; infinite where all is far
     double thinnest = std::numeric_limits<double>::infinity();  ///< radius of the thinnest source close by
   };
   std::array<Octant, 8> octants(const CubeView&) const;

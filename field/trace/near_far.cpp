@@ -111,7 +111,7 @@ double NearFar::sum_rounding() const { return 4e-7 * (degree_ + 2); }
 // D the least distance between the cube and the ball of the group. The gradient of the potential sum w tau K loses
 // |sum w tau (q - c)| m (m+1) D^-(m+2) and 1/2 sum w tau |q-c|^2 m (m+1) (m+2) D^-(m+3). To this comes the remainder B5
 // of a point source at c.
-bool NearFar::is_far(const SourceNode& group, const Vec3d& place, double cube_radius, FarField& far) const {
+bool NearFar::counts_as_far(const SourceNode& group, const Vec3d& place, double cube_radius, FarField& far) const {
   const double distance = length(place), clear = distance - cube_radius - group.radius;
   if (cube_radius > largest_ratio * distance || !(clear > 0)) return false;
   const Remainders r = remainders(group.is_point, cube_radius / distance).times(cube_share(far_degree_, place));
@@ -129,7 +129,7 @@ bool NearFar::is_far(const SourceNode& group, const Vec3d& place, double cube_ra
 }
 
 // A near group whose largest field in the cube is within the budget.
-bool NearFar::is_slight(const SourceNode& group, double distance, double cube_radius, FarField& far) const {
+bool NearFar::counts_as_slight(const SourceNode& group, double distance, double cube_radius, FarField& far) const {
   const double clear = distance - cube_radius - group.radius;
   if (!(clear > 0)) return false;
   const double raised = 1 / integer_power(clear, group.exponent);
@@ -141,7 +141,7 @@ bool NearFar::is_slight(const SourceNode& group, double distance, double cube_ra
 }
 
 bool NearFar::add_if_far(const SourceNode& group, FarGroups& groups) const {
-  if (!is_far(group, group.center - groups.center, groups.half * std::sqrt(3.0), groups.far)) return false;
+  if (!counts_as_far(group, group.center - groups.center, groups.half * std::sqrt(3.0), groups.far)) return false;
   groups.add(group);
   return true;
 }
@@ -222,7 +222,7 @@ std::vector<SourceRef> NearFar::split(const SourceTree& tree, std::span<const So
     }
     const SourceNode& node = tree.node(here.index());
     if (add_if_far(node, groups)) continue;
-    if (slight == Slight::LeftOut && is_slight(node, length(node.center - center), half * std::sqrt(3.0), far))
+    if (slight == Slight::LeftOut && counts_as_slight(node, length(node.center - center), half * std::sqrt(3.0), far))
       continue;
     if (node.radius <= keep * half) {
       near.push_back(here);
@@ -240,10 +240,10 @@ std::vector<SourceRef> NearFar::split(const SourceTree& tree, std::span<const So
   return near;
 }
 
-Surroundings refined(const NearFar& precision, const SourceTree& sources, const Surroundings* parent, int octant,
+Surroundings refined(const NearFar& precision, const SourceTree& sources, const KeptSurroundings* parent, int octant,
                      const Vec3d& center, double half, double keep) {
   Surroundings s;
-  if (parent != nullptr) s.far = parent->far.of_child(octant);
+  if (parent != nullptr) s.far = parent->far.whole().of_child(octant);
   s.near = precision.split(sources, parent != nullptr ? parent->near : sources.roots(), center, half, keep, s.far);
   return s;
 }

@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "field/trace/block_kernels.h"
 #include "field/trace/far_field.h"
+#include "field/trace/kept_far_field.h"
 #include "field/trace/pieces.h"
 #include "field/trace/quadrature.h"
 #include "field/trace/source_tree.h"
@@ -22,8 +24,17 @@ using PieceIndex = std::uint32_t;
 struct Surroundings {
   std::vector<SourceRef> near;
   FarField far;
+};
 
-  std::size_t bytes() const { return sizeof(*this) + near.capacity() * sizeof(SourceRef); }
+/// The same, for the cubes below.
+struct KeptSurroundings {
+  std::vector<SourceRef> near;
+  KeptFarField far;
+
+  KeptSurroundings() = default;
+  explicit KeptSurroundings(Surroundings s) : near(std::move(s.near)), far(s.far) {}
+  /// Without the object itself.
+  std::size_t bytes() const { return near.capacity() * sizeof(SourceRef) + far.bytes(); }
 };
 
 /// Whether near sources that hardly count in a cube are left out of its list.
@@ -69,8 +80,9 @@ class NearFar {
   };
   Remainders remainders(bool point, double q) const;
   struct FarGroups;
-  bool is_far(const SourceNode&, const Vec3d& place, double cube_radius, FarField& far) const;
-  bool is_slight(const SourceNode&, double distance, double cube_radius, FarField& far) const;
+  // Whether a group is one; then its errors are added to those of `far`.
+  bool counts_as_far(const SourceNode&, const Vec3d& place, double cube_radius, FarField& far) const;
+  bool counts_as_slight(const SourceNode&, double distance, double cube_radius, FarField& far) const;
   bool add_if_far(const SourceNode&, FarGroups&) const;
   void fold(const FarGroups&) const;
   FarQuery query(bool points, Slight) const;
@@ -89,7 +101,7 @@ class NearFar {
 
 /// What an octant of a cube sees, given what the cube sees; without a parent: what a cube sees of all sources. `keep`
 /// as in NearFar::split(); `octant` has a bit for each axis.
-Surroundings refined(const NearFar&, const SourceTree&, const Surroundings* parent, int octant, const Vec3d& center,
+Surroundings refined(const NearFar&, const SourceTree&, const KeptSurroundings* parent, int octant, const Vec3d& center,
                      double half, double keep);
 
 /// Emits the quadrature nodes of a piece in the coordinates of a cube.

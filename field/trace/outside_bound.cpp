@@ -29,7 +29,7 @@ struct OutsideBound::Sums {
   }
 };
 
-// As NearFar::is_far(), of a cube that is a point.
+// As NearFar::counts_as_far(), of a cube that is a point.
 bool OutsideBound::add_group(const SourceNode& group, const Vec3d& r, Sums& sums) const {
   const double clear = length(r) - group.radius, m = group.exponent;
   if (!(clear > 0)) return false;

@@ -21,7 +21,7 @@ std::uint64_t TileContent::occupied() const {
   return slots;
 }
 
-Tile::Tile(const TilePlace& place, Surroundings coarse, const TileContent& content)
+Tile::Tile(const TilePlace& place, KeptSurroundings coarse, const TileContent& content)
     : place_(place),
       content_(content),
       blocks_(static_cast<std::size_t>(std::popcount(content.cells)), &huge_pages()),
@@ -41,10 +41,10 @@ Tile::~Tile() = default;
 
 std::size_t Tile::bytes() const {
   std::size_t sum =
-      sizeof(Tile) + coarse_.near.capacity() * sizeof(SourceRef) +
+      sizeof(Tile) + coarse_.bytes() +
       static_cast<std::size_t>(std::popcount(content_.cells) + std::popcount(content_.tiles)) * sizeof(void*);
-  const auto add = [&](const Lazy<Surroundings>& lazy) {
-    if (const Surroundings* s = lazy.peek()) sum += s->bytes();
+  const auto add = [&](const Lazy<KeptSurroundings>& lazy) {
+    if (const KeptSurroundings* s = lazy.peek()) sum += sizeof *s + s->bytes();
   };
   add(fine_);
   if (const StrandView* s = strands_.peek())

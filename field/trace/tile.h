@@ -52,7 +52,7 @@ struct TileContent {
 class alignas(64) Tile : public InHugePages {
  public:
   /// `coarse`: the sources around it, as the divider sees them.
-  Tile(const TilePlace&, Surroundings coarse, const TileContent&);
+  Tile(const TilePlace&, KeptSurroundings coarse, const TileContent&);
   ~Tile();
 
   const TilePlace& place() const { return place_; }
@@ -63,9 +63,9 @@ class alignas(64) Tile : public InHugePages {
   void note_empty(int slot) const;
   /// Around all that the tile holds.
   const Box3& content_box() const { return content_box_; }
-  const Surroundings& coarse() const { return coarse_; }
-  const Lazy<Surroundings>& fine() const { return fine_; }
-  const Lazy<Surroundings>& fine_of_octant(int octant) const { return octants_[static_cast<std::size_t>(octant)]; }
+  const KeptSurroundings& coarse() const { return coarse_; }
+  const Lazy<KeptSurroundings>& fine() const { return fine_; }
+  const Lazy<KeptSurroundings>& fine_of_octant(int octant) const { return octants_[static_cast<std::size_t>(octant)]; }
   /// Made by Strands.
   const Lazy<StrandView>& strands() const { return strands_; }
   /// Of a slot that has one.
@@ -87,9 +87,9 @@ class alignas(64) Tile : public InHugePages {
   Box3 content_box_;
   std::pmr::vector<Lazy<Block>> blocks_;
   mutable std::atomic<std::uint64_t> occupied_;
-  Surroundings coarse_;
-  Lazy<Surroundings> fine_;
-  std::array<Lazy<Surroundings>, 8> octants_;
+  KeptSurroundings coarse_;
+  Lazy<KeptSurroundings> fine_;
+  std::array<Lazy<KeptSurroundings>, 8> octants_;
   Lazy<StrandView> strands_;
   std::unique_ptr<Lazy<Tile>[]> children_;
 };

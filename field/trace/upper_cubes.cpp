@@ -27,20 +27,20 @@ const UpperCube& UpperCubes::add(const Vec3d& center, double half, const UpperCu
   return cubes_.emplace_back(center, half, parent, octant);
 }
 
-const Surroundings& UpperCubes::around(const UpperCube& cube, Seen seen, const NearFar& precision,
-                                       double largest_group) const {
+const KeptSurroundings& UpperCubes::around(const UpperCube& cube, Seen seen, const NearFar& precision,
+                                           double largest_group) const {
   return (cube.*seen).get([&] {
     const auto* const parent = cube.parent != nullptr ? &around(*cube.parent, seen, precision, largest_group) : nullptr;
-    return std::make_unique<const Surroundings>(
+    return std::make_unique<const KeptSurroundings>(
         refined(precision, sources_, parent, cube.octant, cube.center, cube.half, largest_group));
   });
 }
 
-const Surroundings& UpperCubes::coarse_around(const UpperCube& cube) const {
+const KeptSurroundings& UpperCubes::coarse_around(const UpperCube& cube) const {
   return around(cube, &UpperCube::coarse, coarse_, largest_coarse_group);
 }
 
-const Surroundings& UpperCubes::fine_around(const UpperCube& cube) const {
+const KeptSurroundings& UpperCubes::fine_around(const UpperCube& cube) const {
   return around(cube, &UpperCube::fine, fine_, largest_fine_group);
 }
 
@@ -48,7 +48,7 @@ std::size_t UpperCubes::bytes() const {
   std::size_t sum = cubes_.size() * sizeof(UpperCube);
   for (const UpperCube& cube : cubes_)
     for (const auto* lazy : {&cube.coarse, &cube.fine})
-      if (const Surroundings* s = lazy->peek()) sum += s->bytes();
+      if (const KeptSurroundings* s = lazy->peek()) sum += sizeof *s + s->bytes();
   return sum;
 }
 

@@ -19,7 +19,7 @@ struct UpperCube {
   double half;
   const UpperCube* parent;  ///< null: the root
   int octant;               ///< of the parent
-  Lazy<Surroundings> coarse{}, fine{};
+  Lazy<KeptSurroundings> coarse{}, fine{};
 };
 
 /// What upper cubes see is made when the first tile below asks for it, so that no tile goes through all sources of the
@@ -33,13 +33,13 @@ class UpperCubes {
   void clear() { cubes_.clear(); }
 
   /// To the errors of `coarse`, and to an eighth of those of `fine`.
-  const Surroundings& coarse_around(const UpperCube&) const;
-  const Surroundings& fine_around(const UpperCube&) const;
+  const KeptSurroundings& coarse_around(const UpperCube&) const;
+  const KeptSurroundings& fine_around(const UpperCube&) const;
   std::size_t bytes() const;
 
  private:
-  using Seen = Lazy<Surroundings> UpperCube::*;
-  const Surroundings& around(const UpperCube&, Seen, const NearFar&, double largest_group) const;
+  using Seen = Lazy<KeptSurroundings> UpperCube::*;
+  const KeptSurroundings& around(const UpperCube&, Seen, const NearFar&, double largest_group) const;
 
   const SourceTree& sources_;
   const NearFar& coarse_;

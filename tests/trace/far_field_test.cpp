@@ -9,31 +9,13 @@
 #include <gtest/gtest.h>
 
 #include "field/skeleton/skeletons.h"
+#include "field/trace/kept_far_field.h"
 #include "field/trace/level_polynomials.h"
+#include "tests/trace/far_value.h"
 #include "tests/trace/stage.h"
 
 namespace marrow::test {
 namespace {
-
-struct FarValue {
-  double f = 0;
-  Vec3d g{};
-};
-
-// In the cube's coordinates.
-FarValue value_of(const FarField& far, const Vec3d& x) {
-  FarValue v;
-  for (std::size_t i = 0; i < monomial_count; ++i) {
-    const Monomial& m = monomials[i];
-    const double px = integer_power(x.x, m.a), py = integer_power(x.y, m.b), pz = integer_power(x.z, m.c);
-    v.f += far.f[i] * px * py * pz;
-    const double c = far.potential[i];
-    if (m.a > 0) v.g.x += c * m.a * integer_power(x.x, m.a - 1) * py * pz;
-    if (m.b > 0) v.g.y += c * m.b * px * integer_power(x.y, m.b - 1) * pz;
-    if (m.c > 0) v.g.z += c * m.c * px * py * integer_power(x.z, m.c - 1);
-  }
-  return v;
-}
 
 TEST(FarField, TaylorRemainderIsTheTailOfTheSeries) {
   for (int m = 2; m <= 8; ++m)
@@ -136,6 +118,34 @@ TEST(FarField, OfAChildIsTheSameFunction) {
   }
 }
 
+TEST(FarField, KeptItSaysByHowMuchItIsOff) {
+  Random random(46);
+  double f_use = 0, g_use = 0, f_rise = 0;
+  for (int i = 0; i < 100; ++i) {
+    const int degree = far_degree(i);
+    const Split s = random_split(random, random.whole(3, 7), 1e-3, degree);
+    const KeptFarField kept(s.far);
+    const FarField whole = kept.whole();
+    ASSERT_EQ(whole.degree, s.far.degree);
+    EXPECT_EQ(kept.bytes(), 4 * (monomials_to_degree(whole.degree) + monomials_to_degree(whole.degree + 1)));
+    const double f_rounding = whole.f_error - s.far.f_error, g_rounding = whole.gradient_error - s.far.gradient_error;
+    for (int k = 0; k < 20; ++k) {
+      const Vec3d x = random.vector(1);
+      const FarValue a = value_of(s.far, x), b = value_of(whole, x);
+      ASSERT_LE(std::fabs(a.f - b.f), f_rounding + 1e-15 * (1 + a.f));
+      ASSERT_LE(length(a.g - b.g), g_rounding + 1e-14 * (1 + length(a.g)));
+      if (f_rounding > 0) f_use = std::max(f_use, std::fabs(a.f - b.f) / f_rounding);
+      if (g_rounding > 0) g_use = std::max(g_use, length(a.g - b.g) / g_rounding);
+    }
+    const FarField::Bounds b = s.far.bounds();
+    f_rise = std::max(f_rise, f_rounding / (b.f_center + b.f_variation));
+  }
+  std::cout << "  largest difference over what is stated: f " << f_use << ", grad_S f " << g_use
+            << "; largest rise of the error of f over f: " << f_rise << '\n';
+  EXPECT_GT(f_use, 0.1);
+  EXPECT_LT(f_rise, 0x1p-24);
+}
+
 TEST(FarField, BoundsContainTheField) {
   Random random(43);
   for (int i = 0; i < 300; ++i) {
@@ -152,7 +162,7 @@ TEST(FarField, BoundsContainTheField) {
   }
 }
 
-FarValue value_of(const LevelPolynomials& far, const Vec3d& x) {
+FarValue level_value(const LevelPolynomials& far, const Vec3d& x) {
   FarValue v;
   for (std::size_t i = 0; i < far.coefficients.size(); ++i) {
     const Monomial& m = monomials[i];
@@ -184,7 +194,7 @@ TEST(FarField, OfALowerDegreeIsWithinItsStatedError) {
     for (int k = 0; k < 40; ++k) {
       Vec3d x = random.vector(1);
       if (k % 2 == 0) x = x / max_component(abs(x));  // on a face
-      const FarValue whole = value_of(s.far, x), part = value_of(low, x);
+      const FarValue whole = value_of(s.far, x), part = level_value(low, x);
       ASSERT_LE(std::fabs(whole.f - part.f), f_allowed + 1e-14 * whole.f);
       ASSERT_LE(length(whole.g - part.g), g_allowed + 1e-13 * (whole.f + length(whole.g)));
       if (f_allowed > 0) use = std::max(use, std::fabs(whole.f - part.f) / f_allowed);

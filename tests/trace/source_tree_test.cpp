@@ -9,6 +9,7 @@
 
 #include "field/skeleton/skeletons.h"
 #include "field/trace/upper_cubes.h"
+#include "tests/trace/far_value.h"
 #include "tests/trace/stage.h"
 
 namespace marrow::test {
@@ -98,31 +99,12 @@ TEST(SourceTree, MomentsAreThoseOfThePieces) {
   }
 }
 
-struct FieldValue {
-  double f = 0;
-  Vec3d g{};
-};
-
-FieldValue exact(const Piece& piece, const Vec3d& p, int degree) {
+FarValue exact(const Piece& piece, const Vec3d& p, int degree) {
   const SkeletonSample s = piece.is_point()
                                ? point_field<Derivatives::ScaleInvariant>({piece.from, piece.radius}, p, degree)
                                : segment_field<Derivatives::ScaleInvariant>(
                                      {piece.from, piece.to, piece.radius_from, piece.radius_to}, p, degree);
   return {s.value, s.si_gradient};
-}
-
-FieldValue value_of(const FarField& far, const Vec3d& x) {
-  FieldValue v;
-  for (std::size_t i = 0; i < monomial_count; ++i) {
-    const Monomial& m = monomials[i];
-    const double px = integer_power(x.x, m.a), py = integer_power(x.y, m.b), pz = integer_power(x.z, m.c);
-    v.f += far.f[i] * px * py * pz;
-    const double c = far.potential[i];
-    if (m.a > 0) v.g.x += c * m.a * integer_power(x.x, m.a - 1) * py * pz;
-    if (m.b > 0) v.g.y += c * m.b * px * integer_power(x.y, m.b - 1) * pz;
-    if (m.c > 0) v.g.z += c * m.c * px * py * integer_power(x.z, m.c - 1);
-  }
-  return v;
 }
 
 // All pieces but those that are listed, by themselves or in a group.
@@ -137,11 +119,11 @@ std::vector<bool> pieces_without(const SourceTree& tree, const std::vector<Sourc
   return left;
 }
 
-FieldValue sum_of(const SourceTree& tree, const std::vector<bool>& pieces, const Vec3d& p, int degree) {
-  FieldValue sum;
+FarValue sum_of(const SourceTree& tree, const std::vector<bool>& pieces, const Vec3d& p, int degree) {
+  FarValue sum;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     if (!pieces[i]) continue;
-    const FieldValue v = exact(tree.pieces()[i], p, degree);
+    const FarValue v = exact(tree.pieces()[i], p, degree);
     sum.f += v.f;
     sum.g += v.g;
   }
@@ -167,9 +149,9 @@ TEST(SourceTree, SplitsAreWithinTheirStatedErrors) {
     for (int k = 0; k < 10; ++k) {
       Vec3d x = random.vector(1);
       if (k % 2 == 0) x = x / max_component(abs(x));  // on a face
-      const FieldValue sum = sum_of(tree, is_far, center + x * half, n);
+      const FarValue sum = sum_of(tree, is_far, center + x * half, n);
       if (k == 0) folded += static_cast<std::size_t>(std::count(is_far.begin(), is_far.end(), true));
-      const FieldValue found = value_of(far, x);
+      const FarValue found = value_of(far, x);
       const double f_error = std::fabs(found.f - sum.f), g_error = length(found.g - sum.g);
       ASSERT_LE(f_error, far.f_error) << "n=" << n << " half=" << half;
       ASSERT_LE(g_error, far.gradient_error) << "n=" << n << " half=" << half;
@@ -208,7 +190,7 @@ TEST(UpperCubes, HandDownWhatTheyFold) {
       cube = &above.add(center, half, cube, octant);
     }
     enter_an_octant();
-    const auto seen_by = [&](const NearFar& precision, const Surroundings& parent) {
+    const auto seen_by = [&](const NearFar& precision, const KeptSurroundings& parent) {
       return refined(precision, tree, &parent, octant, center, half, largest_fine_group);
     };
     for (const Surroundings& found :
@@ -216,7 +198,7 @@ TEST(UpperCubes, HandDownWhatTheyFold) {
       const std::vector<bool> folded = pieces_without(tree, found.near);
       for (int k = 0; k < 5; ++k) {
         const Vec3d x = random.vector(1);
-        const FieldValue exact_sum = sum_of(tree, folded, center + x * half, n), sum = value_of(found.far, x);
+        const FarValue exact_sum = sum_of(tree, folded, center + x * half, n), sum = value_of(found.far, x);
         ASSERT_LE(std::fabs(sum.f - exact_sum.f), found.far.f_error) << "n=" << n << " half=" << half;
         ASSERT_LE(length(sum.g - exact_sum.g), found.far.gradient_error) << "n=" << n << " half=" << half;
         if (found.far.f_error > 0) f_use = std::max(f_use, std::fabs(sum.f - exact_sum.f) / found.far.f_error);
