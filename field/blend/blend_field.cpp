@@ -87,8 +87,15 @@ std::optional<double> common_angle(const BlendField& blend) {
   return !all.empty() && are_equal(all) ? std::optional(all.front()) : std::nullopt;
 }
 
-bool has_repeated_strand(const std::vector<std::uint32_t>& strands) {
-  return std::adjacent_find(strands.begin(), strands.end()) != strands.end();
+// No point is of the strand of another one, or of segments.
+bool points_are_strands(const BlendField& blend) {
+  std::vector<bool> taken(blend.direction_bounds.size(), false);
+  for (const std::uint32_t strand : blend.segments.strands) taken[strand] = true;
+  return std::ranges::none_of(blend.points.strands, [&](std::uint32_t strand) {
+    const bool before = taken[strand];
+    taken[strand] = true;
+    return before;
+  });
 }
 
 // The tracer of blends wants one pair of bounds for all strands, and points that are strands by themselves.
@@ -99,7 +106,8 @@ std::string untraceable_directions(const BlendField& blend) {
   if (bounds.least < 0 || bounds.least > bounds.most)
     return "directions with an angle below 0, or a larger one for crossing strands, are not known to the tracer of "
            "blends";
-  if (has_repeated_strand(blend.points.strands)) return "points of one strand are not known to the tracer of blends";
+  if (!points_are_strands(blend))
+    return "points of the strand of others, or of segments, are not known to the tracer of blends";
   return {};
 }
 

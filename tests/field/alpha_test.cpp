@@ -162,6 +162,12 @@ TEST(Alpha, IsASingleOneWhereTheRuleGivesNoOther) {
   blend.direction_bounds.push_back({0.3, 1.5});
   EXPECT_FALSE(single_angle(blend));
   EXPECT_TRUE(untraceable_part(blend).empty());
+  // A point of the strand of another one, or of a segment, makes no pair with it.
+  for (const std::uint32_t strand : {0U, 3U}) {
+    blend.points.strands[1] = strand;
+    EXPECT_FALSE(untraceable_part(blend).empty()) << strand;
+  }
+  blend.points.strands[1] = 1;
   blend.direction_bounds[1].most = 1.4;
   EXPECT_FALSE(untraceable_part(blend).empty());
   blend.segments = {};
