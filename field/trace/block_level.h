@@ -10,7 +10,7 @@ namespace marrow {
 struct alignas(64) BlockLevel : InHugePages {
   FieldLevel level;
   double f_error = 0, gradient_error = 0;
-  double angle_error = 0;  ///< of level.angle
+  double angle_error = 0;  ///< of level.angle; where there are strands, of the share of angles: an estimate
 };
 
 }  // namespace marrow

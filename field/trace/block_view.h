@@ -14,9 +14,16 @@ inline constexpr int lanes = 16;
 inline constexpr int floats_per_group = 5 * lanes;  ///< x[16] y[16] z[16] share[16] radius[16]
 inline constexpr float unused_place = 1e3F;  ///< x, y and z of lanes without a source, which have share and radius 0
 
-inline constexpr int most_axes = 45;
-inline constexpr int tensor_floats = 48;  ///< 45 components of a tensor of degree 8; sums of f, f^2, f^2 with direction
-inline constexpr int most_strands = 512;  ///< that a block lists
+/// Of a symmetric tensor of degree 8, x^i y^j z^(8-i-j), j faster; as many axes stand for it (strand_axes.h).
+inline constexpr int tensor_components = 45, axis_count = tensor_components;
+/// What a tensor sum f u^8 over strands goes with, behind its components: sums of f, f^2, and f^2 of those that have a
+/// direction.
+inline constexpr int sum_of_f = 45, sum_of_squares = 46, sum_of_directed_squares = 47;
+/// What stands there behind the weights of axes, in StrandLevel::far: sum f, and over pairs, each counted twice,
+/// f_i f_j (u_i . u_j)^8 and f_i f_j.
+inline constexpr int far_sum = sum_of_f, far_turned_pairs = 46, far_pairs = 47;
+inline constexpr int tensor_floats = 48;
+inline constexpr int most_strands = 512;        ///< that a block lists
 inline constexpr int quadratic_monomials = 10;  ///< 1 x y z xx yy zz xy xz yz
 
 /// The strands of a fine level, whose directions give the angle (strands.h).
@@ -25,8 +32,8 @@ struct StrandLevel {
   const int* groups = nullptr;        ///< curve groups of each strand, which follow each other
   const float* rest = nullptr;  ///< for each strand and monomial (f, sum f_s u_s) of its pieces that are not listed
   int count = 0;
-  /// Strands that are not listed, for each monomial: weights w of axes v with sum w (v . u)^8 = sum f_i (u_i . u)^8 for
-  /// every u; then sum f_i, and over pairs, each counted twice, f_i f_j (u_i . u_j)^8 and f_i f_j.
+  /// Strands that are not listed, for each monomial tensor_floats: weights w of axes v with
+  /// sum w (v . u)^8 = sum f_i (u_i . u)^8 for every u; then far_sum, far_turned_pairs and far_pairs.
   const float* far = nullptr;
   const float* axes = nullptr;  ///< x[48] y[48] z[48], the last three 0
 };

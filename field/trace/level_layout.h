@@ -13,18 +13,21 @@ namespace marrow {
 /// Room for so many floats, 64-byte aligned.
 using Allocate = std::function<float*(std::size_t)>;
 
+inline std::size_t source_floats(const SourceGroups& curves, const SourceGroups& points) {
+  return static_cast<std::size_t>((curves.group_count() + points.group_count()) * floats_per_group);
+}
+
 struct Level {
   SourceGroups curves, points;
   LevelPolynomials far;
 
-  std::size_t source_floats() const {
-    return static_cast<std::size_t>((curves.group_count() + points.group_count()) * floats_per_group);
-  }
-  std::size_t floats() const { return source_floats() + 4 * far.coefficients.size(); }
+  std::size_t floats() const { return source_floats(curves, points) + 4 * far.coefficients.size(); }
 };
 
 /// Writes Level::floats() numbers from `sources` on, which is 64-byte aligned. The errors of the result are left at 0.
 FieldLevel write_field(const Level&, float* sources);
+/// Writes source_floats() numbers from `sources` on; the result has no far field.
+FieldLevel write_sources(const SourceGroups& curves, const SourceGroups& points, float* sources);
 /// Writes the coefficients alone, 4 for each monomial; the result has no sources.
 FieldLevel write_far(const LevelPolynomials&, float* far);
 

@@ -20,8 +20,8 @@ inline constexpr int floats_per_patch = sizeof(SharePatch) / sizeof(float);
 /// of one of these, which is a slot. Parts of one cube follow each other by their octants, x the lowest bit. What runs
 /// need of a patch is here, so that they find it where they find out that there is one.
 struct alignas(32) SharePart {
-  /// Of the patch; one more than that of the first of eight parts; or 0 where neither is made yet. All else is good
-  /// once it is set, and of a patch only but for the last.
+  /// Of the patch; one more than that of the first of eight parts; or 0 where neither is made yet. The rest may be
+  /// read once this is set; of eight parts only `bent` means anything.
   std::uintptr_t address = 0;
   float half = 0.5F;  ///< of the part
   float level = 0;    ///< in the part the share is within `bent` of level + slope . (x - center)

@@ -9,8 +9,6 @@
 
 namespace marrow {
 
-inline constexpr int tensor_components = 45;  ///< x^i y^j z^(8-i-j), j faster
-
 /// x[48] y[48] z[48], the last three 0; 64-byte aligned.
 const float* strand_axes();
 

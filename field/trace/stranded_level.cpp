@@ -5,61 +5,56 @@
 #include <new>
 #include <utility>
 
-#include "field/trace/precision.h"
 #include "field/trace/source_emitter.h"
 #include "field/trace/strand_axes.h"
 
 namespace marrow {
 
 StrandedLevel make_stranded_level(const Block::Context& context, const CellTree::Cell& cell) {
-  const Surroundings around = context.tree.surroundings(cell);
   const Strands& strands = *context.strands;
   std::vector<std::uint32_t> near;
-  for (const SourceRef ref : around.near) near.push_back(ref.index());
+  for (const SourceRef ref : context.tree.surroundings(cell).near) near.push_back(ref.index());
   std::sort(near.begin(), near.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::pair(strands.strand_of(a), a) < std::pair(strands.strand_of(b), b);
   });
-  StrandedLevel out{.level = {.curves = {}, .points = {}, .far = economized(around.far, fine_economy(context.fine))},
+  StrandedLevel out{.curves = {},
+                    .points = {},
                     .seen = strands.around(*cell.tile, cell.center, cell.half, near),
                     .groups = {},
                     .directions = {}};
   SourceEmitter emitter(context.cutter, context.fine, cell.center, cell.half);
+  int lanes_told = 0;
   const auto emit = [&](std::uint32_t piece) {
     emitter.emit(context.pieces[piece]);
     const Vec3d u = strands.direction(piece);
     out.directions.resize(static_cast<std::size_t>(emitter.curves.group_count()) * 3 * lanes);
-    for (int lane = out.lanes_told; lane < emitter.curves.count(); ++lane)
+    for (; lanes_told < emitter.curves.count(); ++lanes_told)
       for (std::size_t k = 0; k < 3; ++k)
-        out.directions[static_cast<std::size_t>(lane / lanes * 3 * lanes + lane % lanes) + k * lanes] =
+        out.directions[static_cast<std::size_t>(lanes_told / lanes * 3 * lanes + lanes_told % lanes) + k * lanes] =
             static_cast<float>(u[k]);
-    out.lanes_told = emitter.curves.count();
   };
   std::size_t at = 0;
-  std::vector<std::uint32_t> counted;
   for (const std::uint32_t strand : out.seen.view.near) {
-    for (; at < near.size() && strands.strand_of(near[at]) < strand; ++at) counted.push_back(near[at]);
+    while (at < near.size() && strands.strand_of(near[at]) < strand) ++at;
     const int before = emitter.curves.group_count();
     for (; at < near.size() && strands.strand_of(near[at]) == strand; ++at) emit(near[at]);
     emitter.curves.end_group();
-    out.lanes_told = emitter.curves.count();
+    lanes_told = emitter.curves.count();
     out.groups.push_back(emitter.curves.group_count() - before);
   }
-  counted.insert(counted.end(), near.begin() + static_cast<std::ptrdiff_t>(at), near.end());
-  for (const std::uint32_t piece : counted) emit(piece);
-  out.level.curves = std::move(emitter.curves);
-  out.level.points = std::move(emitter.points);
-  out.level.far.f_error += emitter.rules.f_error;
-  out.level.far.gradient_error += emitter.rules.gradient_error;
+  for (const std::uint32_t point : out.seen.points) emitter.emit(context.pieces[point]);
+  out.curves = std::move(emitter.curves);
+  out.points = std::move(emitter.points);
   return out;
 }
 
-// The level, then its directions, the far strands, the rests of near ones, the counts of their groups, and what refers
-// to them.
+// The sources, then their directions, the far strands, the rests of near ones, the counts of their groups, and what
+// refers to them.
 BlockLevel write_stranded_level(const StrandedLevel& from, const Allocate& allocate) {
   const auto floats_of = [](std::size_t n) { return (n + lanes - 1) / lanes * lanes; };
   constexpr std::size_t reference_floats = (sizeof(StrandLevel) + sizeof(float) - 1) / sizeof(float);
   const CellStrands& seen = from.seen;
-  const std::size_t own = floats_of(from.level.floats()), count = from.groups.size();
+  const std::size_t own = source_floats(from.curves, from.points), count = from.groups.size();
   const std::size_t stride = floats_of(count), row = 4 * stride;
   float* const at =
       allocate(own + from.directions.size() + seen.far.size() + quadratic_monomials * row + stride + reference_floats);
@@ -79,9 +74,7 @@ BlockLevel write_stranded_level(const StrandedLevel& from, const Allocate& alloc
                                                                                       .far = far,
                                                                                       .axes = strand_axes()};
   BlockLevel out;
-  out.level = write_field(from.level, at);
-  out.f_error = from.level.far.f_error;
-  out.gradient_error = from.level.far.gradient_error;
+  out.level = write_sources(from.curves, from.points, at);
   out.angle_error = seen.view.error;
   out.level.strands = reference;
   return out;

@@ -9,17 +9,17 @@
 
 namespace marrow {
 
-/// The near pieces strand by strand, each with groups of its own; then what has been counted among the far strands.
+/// The near pieces of the strands that a cell counts one by one, each strand with groups of its own; and points.
 struct StrandedLevel {
-  Level level;
+  SourceGroups curves, points;
   CellStrands seen;
   std::vector<int> groups;        // of each strand of `seen`
   std::vector<float> directions;  // as StrandLevel::directions
-  int lanes_told = 0;             // of the curves
 };
 
 StrandedLevel make_stranded_level(const Block::Context&, const CellTree::Cell&);
 
+/// Without far polynomials: of its level kernels find shares alone.
 BlockLevel write_stranded_level(const StrandedLevel&, const Allocate&);
 
 }  // namespace marrow

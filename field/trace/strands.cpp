@@ -200,14 +200,16 @@ double field_at_center(const StrandSamples& s) { return std::min(1.0, static_cas
 
 }  // namespace
 
-// The error up to which strands must be folded so that no more than `most` are left.
-double Strands::largest_forced(const std::vector<Probed>& probed, std::size_t most) {
-  if (probed.size() <= most) return -1;
-  std::vector<double> errors;
-  for (const Probed& p : probed) errors.push_back(error_of(p.samples));
-  const auto last = errors.begin() + static_cast<std::ptrdiff_t>(probed.size() - most - 1);
-  std::nth_element(errors.begin(), last, errors.end());
-  return *last;
+// The strands of least error that must be folded so that no more than `most` are left: of equal ones the first.
+std::vector<bool> Strands::forced(const std::vector<Probed>& probed, std::size_t most) {
+  std::vector<bool> chosen(probed.size(), false);
+  if (probed.size() <= most) return chosen;
+  std::vector<std::pair<double, std::size_t>> errors;
+  for (std::size_t i = 0; i < probed.size(); ++i) errors.emplace_back(error_of(probed[i].samples), i);
+  const auto kept = errors.begin() + static_cast<std::ptrdiff_t>(probed.size() - most);
+  std::nth_element(errors.begin(), kept, errors.end());
+  std::for_each(errors.begin(), kept, [&](const auto& e) { chosen[e.second] = true; });
+  return chosen;
 }
 
 // Folds what is far. alpha is a mean over pairs, and what one strand may be off counts against the field of all strands
@@ -220,7 +222,7 @@ StrandView Strands::fold(std::vector<Probed>& probed, const Cube& cube, const St
     for (std::size_t k = 0; k < strand_places; ++k)
       add_quadratics(parent->far.data(), tensor_floats, (cube.place(k) - parent_cube.center) / parent_cube.half,
                      values.data() + k * tensor_floats);
-  const double inherited = std::max(0.0, static_cast<double>(values[45]));
+  const double inherited = std::max(0.0, static_cast<double>(values[sum_of_f]));
   double others = inherited, strongest = inherited;
   for (const Probed& p : probed) {
     others += field_at_center(p.samples);
@@ -228,15 +230,19 @@ StrandView Strands::fold(std::vector<Probed>& probed, const Cube& cube, const St
   }
   others -= strongest;
   if (parent != nullptr) view.error = parent->error;
-  const double forced = largest_forced(probed, most);
-  std::erase_if(probed, [&](const Probed& p) {
-    const double error = error_of(p.samples);
-    const bool far = static_cast<double>(p.samples.ratio) <= largest_ratio && error <= fold_budget * others;
-    if (!far && !(error <= forced)) return false;
-    kernels_.add_strand(p.samples, values.data());
+  const std::vector<bool> must = forced(probed, most);
+  std::vector<Probed> near;
+  for (std::size_t i = 0; i < probed.size(); ++i) {
+    const StrandSamples& s = probed[i].samples;
+    const double error = error_of(s);
+    if (!must[i] && (static_cast<double>(s.ratio) > largest_ratio || error > fold_budget * others)) {
+      near.push_back(probed[i]);
+      continue;
+    }
+    kernels_.add_strand(s, values.data());
     view.error += others > 0 ? error / others : 0;
-    return true;
-  });
+  }
+  probed = std::move(near);
   view.far.resize(static_cast<std::size_t>(quadratic_monomials) * tensor_floats);
   fit_quadratics(values.data(), tensor_floats, view.far.data());
   for (const Probed& p : probed) view.near.push_back(p.strand);
@@ -268,18 +274,18 @@ std::vector<float> far_rows(const std::vector<float>& quadratic, const std::vect
   std::vector<float> rows(quadratic.size());
   for (std::size_t m = 0; m < quadratic_monomials; ++m) {
     weights_of_tensor(quadratic.data() + m * tensor_floats, rows.data() + m * tensor_floats);
-    rows[m * tensor_floats + 45] = quadratic[m * tensor_floats + 45];
+    rows[m * tensor_floats + far_sum] = quadratic[m * tensor_floats + sum_of_f];
   }
   float pairs[strand_places][2], fitted[quadratic_monomials][2];
   for (std::size_t k = 0; k < strand_places; ++k) {
     const float* v = values.data() + k * tensor_floats;
-    const double f = static_cast<double>(v[45]);
-    pairs[k][0] = static_cast<float>(contracted_with_itself(v) - static_cast<double>(v[47]));
-    pairs[k][1] = static_cast<float>(f * f - static_cast<double>(v[46]));
+    const double f = static_cast<double>(v[sum_of_f]);
+    pairs[k][0] = static_cast<float>(contracted_with_itself(v) - static_cast<double>(v[sum_of_directed_squares]));
+    pairs[k][1] = static_cast<float>(f * f - static_cast<double>(v[sum_of_squares]));
   }
   fit_quadratics(pairs[0], 2, fitted[0]);
   for (std::size_t m = 0; m < quadratic_monomials; ++m)
-    for (std::size_t i = 0; i < 2; ++i) rows[m * tensor_floats + 46 + i] = fitted[m][i];
+    for (std::size_t i = 0; i < 2; ++i) rows[m * tensor_floats + far_turned_pairs + i] = fitted[m][i];
   return rows;
 }
 
@@ -296,10 +302,15 @@ CellStrands Strands::around(const Tile& tile, const Vec3d& center, double half,
     return std::span(first, last);
   };
   std::vector<Probed> probed;
-  for (const std::uint32_t s : parent.near)  // a point that is listed is all of its strand
-    if (!strands_[s].is_point || pieces_of(s).empty()) probed.push_back(probe(s, cube, {}));
+  std::vector<std::uint32_t> points;
+  for (const std::uint32_t s : parent.near) {
+    const auto listed = pieces_of(s);
+    if (strands_[s].is_point && !listed.empty()) points.push_back(listed.front());
+    else probed.push_back(probe(s, cube, {}));
+  }
   std::vector<float> values;
   CellStrands cell{.view = fold(probed, cube, &parent, {tile.place().center, tile.place().half}, most_strands, values),
+                   .points = std::move(points),
                    .rest = {},
                    .far = {}};
   for (Probed& p : probed) {

@@ -35,15 +35,16 @@ struct StrandRest {
 
 /// What a cell sees.
 struct CellStrands {
-  StrandView view;
-  std::vector<StrandRest> rest;  ///< of view.near, in its order
-  std::vector<float> far;        ///< StrandLevel::far
+  StrandView view;                    ///< of the points none that the cell lists
+  std::vector<std::uint32_t> points;  ///< pieces that the cell lists, and that are not among the far strands
+  std::vector<StrandRest> rest;       ///< of view.near, in its order
+  std::vector<float> far;             ///< StrandLevel::far
 };
 
 /// Immutable; safe to use from many threads.
 class Strands {
  public:
-  /// `pieces` in the order of the tree, whose indices are used. Every point is a strand by itself.
+  /// `pieces` in the order of the tree, whose indices are used. No point is of the strand of others.
   Strands(const BlendField&, std::span<const Piece> pieces, const BlockKernels&);
 
   std::uint32_t strand_of(std::uint32_t piece) const { return strand_of_[piece]; }
@@ -71,7 +72,7 @@ class Strands {
   void add_nodes(const Piece&, std::uint32_t index, int& lane);
   const StrandView& around(const Tile&) const;
   Probed probe(std::uint32_t strand, const Cube&, std::span<const std::uint32_t> left_out) const;
-  static double largest_forced(const std::vector<Probed>&, std::size_t most);
+  static std::vector<bool> forced(const std::vector<Probed>&, std::size_t most);
   // Leaves at most `most` to count one by one. `values`: of the tensor, at the places of the cube.
   StrandView fold(std::vector<Probed>&, const Cube&, const StrandView* parent, const Cube& parent_cube,
                   std::size_t most, std::vector<float>& values) const;

@@ -94,8 +94,8 @@ class SlotBits<PacketFloat> {
   PacketInt place_{}, known_{};
 };
 
-// Which eighths of slots may hold surface, a byte for each slot: for a ray, or for those of a packet. Of the
-// blocks of a blend either all tell that may hold surface, or none.
+// Which eighths of slots may hold surface, a byte for each slot: for a ray, or for those of a packet. Either all
+// blocks of a blend tell which eighths may hold surface, or none does.
 template <class F>
 class Eighths;
 

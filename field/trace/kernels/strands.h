@@ -152,13 +152,13 @@ inline V16 add_pairs(Strand16* strands, int count) {
 
 // N over strands and the axes that stand for the far ones; adds what the weights of the axes change.
 inline void add_axes(const StrandLevel& level, const Places16& at, Strand16* strands, Slopes16& sum) {
-  Slopes16 weight[most_axes];
-  V16 on_axis[most_axes] = {};  // sum f_s (u_s . v)^8
-  for (int k = 0; k < most_axes; ++k) weight[k] = at.quadratic(level.far + k, tensor_floats);
+  Slopes16 weight[axis_count];
+  V16 on_axis[axis_count] = {};  // sum f_s (u_s . v)^8
+  for (int k = 0; k < axis_count; ++k) weight[k] = at.quadratic(level.far + k, tensor_floats);
   for (int j = 0; j < level.count; ++j) {
     Strand16& s = strands[j];
     V16 turn[3] = {};
-    for (int k = 0; k < most_axes; ++k) {
+    for (int k = 0; k < axis_count; ++k) {
       const float v[3] = {level.axes[k], level.axes[tensor_floats + k], level.axes[2 * tensor_floats + k]};
       const V16 g = s.along(v), steep = power_of(g, 7), of_axis = weight[k].value * steep;
       on_axis[k] += s.f.value * (steep * g);
@@ -167,7 +167,7 @@ inline void add_axes(const StrandLevel& level, const Places16& at, Strand16* str
     sum.value += s.f.value * s.along(turn);
     for (int i = 0; i < 3; ++i) s.turn[i] += turn[i];
   }
-  for (int k = 0; k < most_axes; ++k)
+  for (int k = 0; k < axis_count; ++k)
     for (int e = 0; e < 3; ++e) sum.slope[e] += weight[k].slope[e] * on_axis[k];
 }
 
@@ -197,17 +197,17 @@ inline void add_points(const FieldLevel& level, int degree, const Places16& at, 
 
 void strand_shares(const FieldLevel& level, int degree, const float (&center)[3], float half, float* memory,
                    StrandShares& out) {
-  const StrandLevel& far = *level.strands;
+  const StrandLevel& seen = *level.strands;
   auto* const strands = static_cast<Strand16*>(static_cast<void*>(memory));
   const Places16 at(center, half);
   if (degree == 4) find_strands<4>(level, degree, at, strands);
   else find_strands<0>(level, degree, at, strands);
   Slopes16 numerator;
-  numerator.value = add_pairs(strands, far.count);
-  add_axes(far, at, strands, numerator);
+  numerator.value = add_pairs(strands, seen.count);
+  add_axes(seen, at, strands, numerator);
   PairsOfFields pairs;
-  pairs.before = at.quadratic(far.far + 45, tensor_floats);
-  for (int j = 0; j < far.count; ++j) {
+  pairs.before = at.quadratic(seen.far + far_sum, tensor_floats);
+  for (int j = 0; j < seen.count; ++j) {
     const Strand16& s = strands[j];
     pairs.add(s.f);
     const V16 by_f = s.along(s.turn), by_u = 8.0F * s.f.value;
@@ -218,8 +218,8 @@ void strand_shares(const FieldLevel& level, int degree, const float (&center)[3]
     }
   }
   add_points(level, degree, at, pairs);
-  const Slopes16 above = numerator + numerator + at.quadratic(far.far + 46, tensor_floats),
-                 below = pairs.sum + pairs.sum + at.quadratic(far.far + 47, tensor_floats);
+  const Slopes16 above = numerator + numerator + at.quadratic(seen.far + far_turned_pairs, tensor_floats),
+                 below = pairs.sum + pairs.sum + at.quadratic(seen.far + far_pairs, tensor_floats);
   // One strand alone: any angle will do, see directional_alpha.h.
   const auto some = below.value > 1e-36F;
   const V16 inverse = select(some, 1.0F / below.value, V16{});
