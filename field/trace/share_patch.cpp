@@ -8,6 +8,7 @@
 
 #include "field/trace/far_field.h"
 #include "field/trace/level_cache.h"
+#include "field/trace/polynomial_bend.h"
 
 namespace marrow {
 namespace {
@@ -185,15 +186,13 @@ std::pair<double, double> range_beside_line(const SharePatch& patch) {
 
 void find_line(SharePatch& patch, SharePart& part) {
   const auto [low, high] = range_beside_line(patch);
-  double level = 0.5 * (low + high), bend = 0;
+  double level = 0.5 * (low + high);
   for (std::size_t m = 0; m < coefficient_count; ++m) {
     const Monomial& p = monomials[m];
-    const auto c = static_cast<double>(patch.coefficient[m]), d = static_cast<double>(p.degree());
-    if (p.degree() == 0) level += c;
+    if (p.degree() == 0) level += static_cast<double>(patch.coefficient[m]);
     if (p.degree() == 1) part.slope[p.a > 0 ? 0 : p.b > 0 ? 1 : 2] = patch.coefficient[m] * patch.inverse_half;
-    // Of a monomial of degree d where |z| <= 1 along each axis.
-    bend += 0.5 * std::fabs(c) * d * d;
   }
+  const double bend = polynomial_bend(coefficient_count, [&](std::size_t m) { return patch.coefficient[m]; });
   constexpr double rounding = 1e-6;
   part.level = static_cast<float>(level);
   part.bent = static_cast<float>(0.5 * (high - low) + rounding);
@@ -326,9 +325,6 @@ ShareAt share_at(const SharePatch& patch, const Vec3d& at) {
   for (std::size_t k = 0; k < 3; ++k) out.gradient[k] = at_z.slope[k] * scale;
   out.bend = static_cast<double>(patch.bend);
   out.error = static_cast<double>(patch.error);
-  if (out.share >= 0 && out.share <= 1) return out;
-  out.share = std::clamp(out.share, 0.0, 1.0);
-  out.gradient = {};
   return out;
 }
 

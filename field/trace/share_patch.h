@@ -20,7 +20,8 @@
 namespace marrow {
 
 /// A share, its gradient, and what bounds how it bends: |share(x + v) - share(x) - gradient . v| <= bend |v|^2 within
-/// the part. In the coordinates of the block.
+/// the part. It may lie a little beyond [0, 1], where the angle stays at an end of its range. In the coordinates of the
+/// block.
 struct ShareAt {
   double share = 0;
   Vec3d gradient;
@@ -67,7 +68,7 @@ class SharePatches {
   // Makes a patch, or divides the part where one does not do.
   std::uintptr_t fit_or_divide(const BlockKernels&, int degree, const BlockLevel& strands, int path, int shift,
                                SharePart& to) const;
-  // Whether no octant has a patch that does, where that of the whole part is off by so much.
+  // Whether hardly an octant has a patch that does, where that of the whole part is off by so much.
   static bool is_far_off(float residual);
   template <class T>
   std::uintptr_t keep(const SharePart& made, std::unique_ptr<T> owned, SharePart& to) const;

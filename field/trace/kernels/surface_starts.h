@@ -47,6 +47,9 @@ class SurfaceStart {
     const F along[3] = {g_[0] * inverse, g_[1] * inverse, g_[2] * inverse};
     F bent[3];
     bend_of(h_, along, bent);
+    // Beyond its range the angle does not change.
+    if constexpr (Varied)
+      share_weight = select((from(hits_.share) >= 0.0F) & (from(hits_.share) <= 1.0F), share_weight, F{});
     for (int k = 0; k < 3; ++k) {
       growth[k] = gradient_[k] * x_weight + bent[k] * y_weight;
       if constexpr (Varied) growth[k] += from(hits_.share_gradient[k]) * share_weight;
