@@ -45,8 +45,10 @@ std::string render(const Diagnostic& d, std::string_view text) {
     const std::string number = std::to_string(d.where.line);
     const std::string gutter(std::max<std::size_t>(5, number.size() + 1), ' ');
     out += std::string(gutter.size() - number.size(), ' ') + number + " | " + std::string(line) + '\n';
+    // What goes on in further lines is underlined to the end of the first.
+    const int rest = static_cast<int>(line.size()) - d.where.column;
     out += gutter + " | " + indent_to(line, d.where.column) + '^' +
-           std::string(static_cast<std::size_t>(std::max(0, d.length - 1)), '~') + '\n';
+           std::string(static_cast<std::size_t>(std::max(0, std::min(d.length - 1, rest))), '~') + '\n';
   }
   if (!d.hint.empty()) out += "      = " + d.hint + '\n';
   return out;

@@ -73,7 +73,8 @@ Diagnostics doubts_about(const FilmSummary& film) {
     warn(fmt::format("{} samples were not finite or negative and were left out, the first at pixel {}, {}",
                      film.invalid.count, film.invalid.x, film.invalid.y));
   if (film.uncertified_pixels > 0)
-    warn(fmt::format("at {} pixels it is not proved that no surface was missed", film.uncertified_pixels));
+    warn(fmt::format("at {} it is not proved that no surface was missed (`field.certified` is 0 there)",
+                     film.uncertified_pixels == 1 ? "1 pixel" : fmt::format("{} pixels", film.uncertified_pixels)));
   return doubts;
 }
 

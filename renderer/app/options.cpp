@@ -75,7 +75,8 @@ void describe(CLI::App& app, RenderCommand& c) {
       ->type_name("x0,y0,x1,y1");
   app.add_option("--view", c.view, "View of the display for the PNG")->type_name("NAME");
   add_path(app, "--ocio", c.ocio, "OpenColorIO configuration; default: $OCIO, else the built-in one");
-  app.add_option("--isa", c.isa, "Instruction set for tracing; the picture is the same for all")
+  app.add_option("--isa", c.isa,
+                 "Instruction set for tracing; the picture is the same for all. Default: the widest of this machine")
       ->check(CLI::IsMember({"sse4", "avx2", "avx512"}));
   // For tests: none of these changes the picture.
   app.add_option("--embree-isa", c.embree_isa)->check(CLI::IsMember({"sse4", "avx2", "avx512"}))->group("");
@@ -86,7 +87,7 @@ void describe(CLI::App& app, RenderCommand& c) {
   app.add_flag_callback(
          "-q,--quiet", [&c] { c.progress = ProgressStyle::None; }, "No progress, only problems")
       ->excludes(progress);
-  app.add_flag("--strict", c.strict, "Exit 1 when the picture may be wrong (samples left out, rays not certified)");
+  app.add_flag("--strict", c.strict, "Exit 1 when the picture may be wrong (samples left out, pixels not certified)");
   app.footer(
       "Examples:\n"
       "  marrow render neuron.yaml                       neuron.exr and neuron.png\n"
@@ -241,8 +242,9 @@ std::variant<Command, ExitCode> parse_options(int argc, const char* const* argv)
   app.set_version_flag("--version", "marrow " MARROW_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "marrow COMMAND --help explains a command. Exit codes: 0 done, 2 command line, 65 bad scene,\n"
-      "66 no input, 69 not available, 70 internal error, 73 and 74 cannot write, 75 interrupted.");
+      "marrow COMMAND --help explains a command. Exit codes: 0 done, 1 done but in doubt (--strict),\n"
+      "2 command line, 65 bad scene, 66 no input, 69 not available, 70 internal error,\n"
+      "73 and 74 cannot write, 75 interrupted.");
 
   RenderCommand render;
   CheckCommand check;

@@ -5,9 +5,11 @@
 #include <utility>
 #include <variant>
 
+#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_invoke.h>
 
+#include "field/math/instruction_sets.h"
 #include "renderer/app/commands.h"
 #include "renderer/app/environment.h"
 #include "renderer/app/files.h"
@@ -74,6 +76,15 @@ std::size_t most_threads(int asked) {
                    : global_control::active_value(global_control::max_allowed_parallelism);
 }
 
+// What the machine does not have is no mistake of the scene.
+Diagnostics missing_instruction_set(const RenderCommand& command) {
+  const auto sets = instruction_sets();
+  for (const std::string_view asked : {std::string_view(command.isa), std::string_view(command.embree_isa)})
+    if (!asked.empty() && std::ranges::find(sets, asked) == sets.end())
+      return {failure(fmt::format("--isa: this machine does not have {}, but {}", asked, fmt::join(sets, " and ")))};
+  return {};
+}
+
 // A problem with a place is the scene's; one without is the machine's: an instruction set that is not there.
 ExitCode exit_code_of_failed_build(const Diagnostics& why) {
   const bool in_scene = std::any_of(why.begin(), why.end(), [](const auto& d) { return !d.where.file.empty(); });
@@ -83,6 +94,8 @@ ExitCode exit_code_of_failed_build(const Diagnostics& why) {
 }  // namespace
 
 ExitCode run(const RenderCommand& command) {
+  if (const auto missing = missing_instruction_set(command); !missing.empty())
+    return report(missing, ExitCode::Unavailable);
   ReadRecord record;
   const auto scene = read_scene(command.scene.path, ReadOptions{.overrides = command.scene.overrides}, record);
   if (!scene) return report(scene.why(), record.sources, exit_code_of_failed_load(command.scene));

@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "renderer/scene/files/skeleton_file.h"
 #include "renderer/scene/include.h"
 #include "renderer/scene/override.h"
 #include "renderer/scene/reader.h"
@@ -104,6 +105,13 @@ void sort_by_place(Diagnostics& problems) {
 
 std::optional<SceneDescription> read_all(const std::filesystem::path& path, const ReadOptions& options,
                                          Reader& reader) {
+  const std::string name = path.filename().string();
+  if (skeleton_format_of(name) && std::filesystem::exists(path)) {
+    Diagnostic mistaken = failure("this is a skeleton, not a scene", path.string());
+    mistaken.hint = "a scene names it by `skeleton: {file: " + name + "}`";
+    reader.problems.push_back(std::move(mistaken));
+    return std::nullopt;
+  }
   TextBudget budget;
   std::filesystem::path canonical;
   auto scene = read_text(path, {.file = UINT32_MAX}, reader, budget, canonical);

@@ -66,6 +66,16 @@ class CheckTest(ProgramTest):
             with self.subTest(scene.name):
                 self.expect(0, "check", str(scene))
 
+    def test_a_skeleton_is_no_scene(self):
+        told = self.expect(65, "check", self.write("tree.swc", "1 1 0 0 0 1 -1\n2 1 1 0 0 1 1\n")).stderr
+        self.assertIn("tree.swc: error: this is a skeleton, not a scene", told)
+        self.assertIn("`skeleton: {file: tree.swc}`", told)
+        self.assertIn("missing.swc", self.expect(66, "check", "missing.swc").stderr)
+
+    def test_what_goes_on_in_further_lines_is_underlined_to_the_end_of_the_first(self):
+        told = self.expect(65, "check", self.write("words.yaml", "one two\nthree four\nfive\n")).stderr
+        self.assertIn("| ^~~~~~~\n", told)
+
 
 class SchemaTest(ProgramTest):
     def test_the_schema_is_json_schema(self):

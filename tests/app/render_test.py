@@ -76,6 +76,17 @@ class RenderTest(ProgramTest):
         for name in sets:
             self.assertEqual(self.bytes_of("--isa", name, "-t", "1", scene="blend.yaml"), best, name)
 
+    def test_an_instruction_set_that_is_not_there_is_told_once(self):
+        self.write("blend.yaml", BLEND)
+        flags = pathlib.Path("/proc/cpuinfo").read_text()
+        has_all = " avx512bw " in flags
+        for option in ("--isa", "--embree-isa"):
+            done = self.expect(0 if has_all else 69, "render", "blend.yaml", option, "avx512", "-q", "-o", "set.exr")
+            if has_all: continue
+            self.assertEqual(done.stderr.count("error"), 1, done.stderr)
+            self.assertIn("this machine does not have avx512, but sse4", done.stderr)
+            self.assertEqual(self.files(), ["blend.yaml"])
+
     def test_a_bad_scene_leaves_old_pictures_alone(self):
         self.write("bad.yaml", BAD)
         self.write("bad.exr", "old")
