@@ -92,15 +92,19 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
                             .leaving = log.side == CellLog::Side::Inside,
                             .around = ray.around};
   Root root = state_->kernels.first_root(b.view(), cube.local, query);
-  log.add({cube.to_world(root.searched_from), static_cast<std::uint32_t>(root.evaluations)});
+  // By rounding a place in the block may come before it is entered.
+  const auto note = [&] {
+    log.add({std::max(cube.to_world(root.searched_from), enter), static_cast<std::uint32_t>(root.evaluations)});
+  };
+  note();
   if (root.begins_outside) log.side = CellLog::Side::Outside;
   if (root.enters_inside && begins_inside(state_->field, state_->bounds, state_->serial, ray)) {
     log.side = CellLog::Side::Inside;
     query.leaving = true;
     root = state_->kernels.first_root(b.view(), cube.local, query);
-    log.add({cube.to_world(root.searched_from), static_cast<std::uint32_t>(root.evaluations)});
+    note();
   }
-  log.undecided = std::min(log.undecided, cube.to_world(root.undecided));
+  log.undecided = std::min(log.undecided, std::max(cube.to_world(root.undecided), enter));
   if (!root.hit) return {};
   const double t = std::max(cube.to_world(root.t), ray.t_min);
   const bool ends = any && !query.leaving && t > ray.t_max - nearly_ended * b.half();

@@ -86,10 +86,12 @@ void ask_for_cells(std::span<const PartRays> parts) {
   for_each_cell(ask_for_block);
 }
 
+// By rounding a place in the block may come before it is entered.
 void add_to(CellLog& log, const CellRoots& roots, std::size_t lane) {
-  log.add({roots.searched_from[lane], static_cast<std::uint32_t>(roots.evaluations[lane])});
+  const auto behind_entry = [&](double t) { return std::max(t, roots.enter[lane]); };
+  log.add({behind_entry(roots.searched_from[lane]), static_cast<std::uint32_t>(roots.evaluations[lane])});
   if (roots.begins_outside.has(lane)) log.side = CellLog::Side::Outside;
-  log.undecided = std::min(log.undecided, roots.undecided[lane]);
+  log.undecided = std::min(log.undecided, behind_entry(roots.undecided[lane]));
 }
 
 }  // namespace

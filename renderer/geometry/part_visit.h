@@ -10,9 +10,11 @@
 
 namespace marrow {
 
-/// The nearest hit among the parts of solids.
+/// The nearest hit among the parts of solids. A hit lies no nearer than where its part begins: by rounding it may be
+/// found just before, where another part has one, too, and the order in which parts are asked must not matter.
 struct PartHit {
   double t = std::numeric_limits<double>::infinity();
+  double reached = std::numeric_limits<double>::infinity();  ///< t, or `enter` where that is later
   std::size_t solid = 0, element = 0;
   const void* place = nullptr;                                 ///< ElementLog's
   double enter = 0;                                            ///< where the ray came into the part
@@ -31,7 +33,7 @@ class PartVisit {
   std::vector<RayVisit>* visits = nullptr;  ///< of all parts, if there is one
 
   /// What lies behind it does not matter any more.
-  double last() const { return std::min(ray->t_max, best.t); }
+  double last() const { return std::min(ray->t_max, best.reached); }
 
   /// What a part of the solid is told of the ray.
   ElementLog before(const Solid& solid) const {
@@ -52,10 +54,13 @@ class PartVisit {
   bool take(std::size_t index, const Solid& solid, const SolidPart& part, double t, const ElementLog& log) {
     note_side(solid, log);
     best.undecided = std::min(best.undecided, log.undecided);
-    if (!(t < std::numeric_limits<double>::infinity()) || t > best.t) return false;
-    if (t == best.t && std::tuple(index, part.element, log.enter) > std::tuple(best.solid, best.element, best.enter))
+    const double reached = std::max(t, log.enter);
+    if (!(t < std::numeric_limits<double>::infinity()) || reached > best.reached) return false;
+    if (reached == best.reached &&
+        std::tuple(t, index, part.element, log.enter) > std::tuple(best.t, best.solid, best.element, best.enter))
       return false;
     best.t = t;
+    best.reached = reached;
     best.solid = index;
     best.element = part.element;
     best.enter = log.enter;
