@@ -1,12 +1,19 @@
 // marrow bench: the program and its peers on common scenes.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <set>
+#include <string>
 #include <system_error>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "renderer/app/bench_report.h"
 #include "renderer/app/commands.h"
+#include "renderer/app/interrupt.h"
 #include "renderer/app/print.h"
 #include "renderer/app/report.h"
 #include "renderer/bench/workload.h"
@@ -17,10 +24,18 @@
 namespace marrow {
 namespace {
 
+namespace fs = std::filesystem;
+
+Diagnostic with_hint(std::string message, std::string hint) {
+  Diagnostic d = failure(std::move(message));
+  d.hint = std::move(hint);
+  return d;
+}
+
 struct Chosen {
   std::vector<Workload> workloads;
   SourceCache sources;
-  Diagnostics problems;
+  Diagnostics problems, warnings;
   ExitCode code = ExitCode::Ok;  // of the first problem
 
   void add_problems(const Diagnostics& more, ExitCode why) {
@@ -29,19 +44,43 @@ struct Chosen {
   }
 };
 
+// A name with a folder or an ending means a file, whether it is there or not.
+bool is_name_of_file(const std::string& name) {
+  std::error_code error;
+  const fs::path path(name);
+  return path.has_parent_path() || path.has_extension() || fs::exists(path, error);
+}
+
+Diagnostic not_a_skeleton(const std::string& name) {
+  const auto ending = fs::path(name).extension();
+  if (ending == ".yaml" || ending == ".yml")
+    return with_hint(fmt::format("`{}` is a scene by its name, and bench measures skeletons and workloads", name),
+                     fmt::format("marrow render {} makes its picture, and tells the time", name));
+  return with_hint(
+      fmt::format("`{}` is no skeleton by its name", name),
+      fmt::format("bench takes {}, and files that end with {}", fmt::join(workload_names(), ", "), workload_endings));
+}
+
 void add_file(const std::string& name, Chosen& chosen) {
   auto file = InputFiles().read(name);
   if (!file) return chosen.add_problems(file.why(), ExitCode::NoInput);
-  auto workload = read_workload(file->bytes, name);
+  if (!is_workload_file(name)) return chosen.add_problems({not_a_skeleton(name)}, ExitCode::Usage);
+  auto read = read_workload(file->bytes, name);
   chosen.sources.add(name, std::move(file->bytes));
-  if (!workload) return chosen.add_problems(workload.why(), ExitCode::BadInput);
-  chosen.workloads.push_back(std::move(*workload));
+  if (!read) return chosen.add_problems(read.why(), ExitCode::BadInput);
+  chosen.warnings.insert(chosen.warnings.end(), read->warnings.begin(), read->warnings.end());
+  chosen.workloads.push_back(std::move(read->workload));
 }
 
 void add_named(const std::string& name, Chosen& chosen) {
   auto workload = workload_named(name);
   if (!workload) return chosen.add_problems(workload.why(), ExitCode::Usage);
   chosen.workloads.push_back(std::move(*workload));
+}
+
+bool is_known(const std::string& name) {
+  const auto names = workload_names();
+  return std::ranges::find(names, name) != names.end();
 }
 
 // Their names are those of files when they are written.
@@ -56,39 +95,78 @@ void ask_for_different_names(Chosen& chosen) {
 Chosen choose(const std::vector<std::string>& asked) {
   Chosen chosen;
   for (const std::string& name : asked.empty() ? workload_names() : asked)
-    is_workload_file(name) ? add_file(name, chosen) : add_named(name, chosen);
+    !is_known(name) && is_name_of_file(name) ? add_file(name, chosen) : add_named(name, chosen);
   ask_for_different_names(chosen);
   return chosen;
 }
 
-ExitCode write_scenes(std::vector<Workload> workloads, const BenchCommand& command) {
+// What each option by itself may be, and they together may not.
+Diagnostics objections(const BenchSettings& settings) {
+  Diagnostics found;
+  if (settings.mesh_spacing && !std::isfinite(*settings.mesh_spacing))
+    found.push_back(failure(fmt::format("--mesh: a grid's spacing is a number from 0 to 1e15 scene units; found {}",
+                                        *settings.mesh_spacing)));
+  if (settings.many_samples && !settings.processes)
+    found.push_back(failure("--long asks for longer processes, and --no-processes for none: one of them is enough"));
+  return found;
+}
+
+Status make_folder(const fs::path& folder) {
   std::error_code error;
-  std::filesystem::create_directories(*command.write_to, error);
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error))
+    return failure(fmt::format("`{}` is a file, not a folder", folder.string()));
+  fs::create_directories(folder, error);
+  if (error) return failure(fmt::format("cannot make the folder `{}`: {}", folder.string(), error.message()));
+  return Done{};
+}
+
+ExitCode write_scenes(std::vector<Workload> workloads, const BenchCommand& command) {
+  if (auto status = make_folder(*command.write_to); !status) return report(status.why(), ExitCode::CannotCreate);
   for (std::size_t count = 1000; count <= command.settings.largest_scaling; count *= 10)
     for (Workload& w : std::array{strands(count), tufts(count)}) workloads.push_back(std::move(w));
-  for (const Workload& w : workloads)
-    if (auto status = write_scene(w, command.settings.size, *command.write_to / (w.name + ".yaml")); !status)
+  for (const Workload& w : workloads) {
+    const fs::path scene = *command.write_to / (w.name + ".yaml");
+    if (auto status = write_scene(w, command.settings.size, scene); !status)
       return report(status.why(), ExitCode::CannotCreate);
+    complain(fmt::format("wrote {}\n", scene.string()));
+  }
   return ExitCode::Ok;
 }
 
-}  // namespace
+std::string closing_line(const std::vector<WorkloadFigures>& finished) {
+  std::vector<std::string> names;
+  for (const WorkloadFigures& w : finished) names.push_back(w.name);
+  return names.empty() ? "interrupted; nothing was finished\n"
+                       : fmt::format("interrupted; finished {}\n", fmt::join(names, ", "));
+}
 
-ExitCode run(const BenchCommand& command) {
-  Chosen chosen = choose(command.workloads);
-  if (chosen.code != ExitCode::Ok) return report(chosen.problems, chosen.sources, chosen.code);
-  if (command.write_to) return write_scenes(std::move(chosen.workloads), command);
-  if (!command.json) say(bench_text(command.settings));
+ExitCode measure(const std::vector<Workload>& workloads, const BenchCommand& command) {
+  BenchSettings settings = command.settings;
+  settings.stop = {&interruption_flag()};
+  if (!command.json) say(bench_text(settings));
   const auto figures = run_benchmark(
-      chosen.workloads, command.settings, [](const std::string& what) { complain(what + '\n'); },
+      workloads, settings, [](const std::string& what) { complain(what + '\n'); },
       [&](const WorkloadFigures& w) {
         if (command.json) return;
         say(bench_text(w));
         std::fflush(stdout);
       });
   if (!figures) return report(figures.why(), ExitCode::Internal);
-  if (command.json) say(bench_json(command.settings, *figures));
-  return ExitCode::Ok;
+  if (command.json) say(bench_json(settings, *figures));
+  if (!settings.stop.is_made()) return ExitCode::Ok;
+  complain(closing_line(*figures));
+  return ExitCode::Interrupted;
+}
+
+}  // namespace
+
+ExitCode run(const BenchCommand& command) {
+  if (const auto found = objections(command.settings); !found.empty()) return report(found, ExitCode::Usage);
+  Chosen chosen = choose(command.workloads);
+  report(chosen.warnings, chosen.sources, ExitCode::Ok);
+  if (chosen.code != ExitCode::Ok) return report(chosen.problems, chosen.sources, chosen.code);
+  if (command.write_to) return write_scenes(std::move(chosen.workloads), command);
+  return measure(chosen.workloads, command);
 }
 
 }  // namespace marrow

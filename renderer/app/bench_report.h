@@ -12,7 +12,8 @@ namespace marrow {
 std::string bench_text(const BenchSettings&);
 std::string bench_text(const WorkloadFigures&);
 
-/// One object; the names of figures end with their unit.
+/// One object; the names of figures end with their unit. null: there is no answer, or the times are too short to tell.
+/// After a request to stop it has `interrupted`.
 std::string bench_json(const BenchSettings&, const std::vector<WorkloadFigures>&);
 
 }  // namespace marrow

@@ -185,7 +185,8 @@ void describe(CLI::App& app, BenchCommand& c) {
   app.add_flag_callback(
       "--no-processes", [&c] { c.settings.processes = false; }, "Leaves out whole processes, and so POV-Ray");
   app.add_flag("--long", c.settings.many_samples, "Whole processes with --spp samples too: minutes");
-  app.add_option("--spp", c.settings.samples, "Samples of the long processes; default 16, POV-Ray's always 16")
+  app.add_option("--spp", c.settings.samples,
+                 "Samples of the long processes; default 16. POV-Ray takes the nearest square and one: 17")
       ->check(CLI::Range(2, 4096))
       ->type_name("N");
   app.add_option("--scaling", c.settings.largest_scaling, "Also 1000, 10,000, ... segments, up to N")

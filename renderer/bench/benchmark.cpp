@@ -8,17 +8,18 @@
 
 #include "renderer/bench/dual_mesh.h"
 #include "renderer/bench/frames.h"
+#include "renderer/bench/further_sample.h"
 #include "renderer/bench/prepared_scene.h"
 #include "renderer/bench/process_race.h"
 #include "renderer/bench/temporary_folder.h"
 #include "renderer/bench/workload.h"
 #include "renderer/geometry/build_surfaces.h"
-#include "renderer/transport/render.h"
 
 namespace marrow {
 namespace {
 
 constexpr int bounces_of_a_path = 4;
+constexpr const char* cones = "embree round cones";
 
 // An engine at work: what is timed goes into the lists, one entry a round.
 struct Racer {
@@ -28,9 +29,18 @@ struct Racer {
   std::vector<EngineHit> starts;
 };
 
-Cost per_ray(const Cost& cost, std::uint64_t rays) {
+std::optional<Cost> per_ray(const Cost& cost, std::uint64_t rays) {
+  if (rays == 0) return std::nullopt;
   const auto n = static_cast<double>(rays);
-  return rays == 0 ? Cost{} : Cost{cost.wall_s / n, cost.cpu_s / n};
+  return Cost{cost.wall_s / n, cost.cpu_s / n};
+}
+
+// Ours over theirs, of a bounce; nothing where one of them had no hit to bounce from.
+Ratio bounce_ratio(const Racer& ours, const Racer& theirs) {
+  const auto our_rays = static_cast<double>(ours.figures.bounces.rays);
+  const auto their_rays = static_cast<double>(theirs.figures.bounces.rays);
+  if (!(our_rays > 0 && their_rays > 0)) return {};
+  return median_ratio(whole_costs(ours.bounces), whole_costs(theirs.bounces)) * (their_rays / our_rays);
 }
 
 class Measurement {
@@ -39,13 +49,14 @@ class Measurement {
               const std::function<void(const std::string&)>& tell)
       : workload_(workload),
         settings_(settings),
-        frame_{settings.size, settings.threads},
+        frame_{settings.size, settings.threads, settings.stop},
         scene_(folder / (workload.name + ".yaml")),
         tell_(tell) {
     out_.mesh_spacing = settings.mesh_spacing.value_or(max_component(workload.bounds().size()) / 500);
   }
 
-  Result<WorkloadFigures> run() {
+  /// Nothing when it was asked to stop.
+  Result<std::optional<WorkloadFigures>> run() {
     out_.name = workload_.name;
     out_.about = workload_.about;
     out_.primitives = workload_.size();
@@ -53,19 +64,26 @@ class Measurement {
     if (auto status = write_scene(workload_, settings_.size, scene_); !status) return status.why();
     auto ready = prepare_scene(scene_, {}, settings_.threads);
     if (!ready) return ready.why();
-    add_marrow(*ready);
-    describe_surfaces(*ready);
-    add_peers();
-    race_frames(*ready);
-    race_bounces(*ready);
-    if (settings_.rules) compare_rules();
-    if (settings_.processes) race_processes(workload_, settings_, scene_, tell_, out_);
+    measure(*ready);
+    if (settings_.stop.is_made()) return std::optional<WorkloadFigures>{};
     for (Racer& r : racers_) out_.engines.push_back(std::move(r.figures));
-    return std::move(out_);
+    return std::optional(std::move(out_));
   }
 
  private:
   void say(const std::string& what) const { tell_(workload_.name + ": " + what); }
+  bool is_stopped() const { return settings_.stop.is_made(); }
+
+  void measure(const PreparedScene& ready) {
+    if (is_stopped()) return;
+    add_marrow(ready);
+    describe_surfaces(ready);
+    if (!is_stopped()) add_peers();
+    if (!is_stopped()) race_frames(ready);
+    if (!is_stopped()) race_bounces(ready);
+    if (settings_.rules && !is_stopped()) compare_rules();
+    if (settings_.processes && !is_stopped()) race_processes(workload_, settings_, scene_, tell_, out_);
+  }
 
   void add_marrow(const PreparedScene& ready) {
     out_.read_s = ready.read_s;
@@ -100,7 +118,7 @@ class Measurement {
     TriangleMesh mesh;
     seconds = cost_of([&] {
                 if (const auto scene = prepare_scene(scene_, {}, settings_.threads))
-                  mesh = dual_mesh(*scene->surfaces, out_.mesh_spacing);
+                  mesh = dual_mesh(*scene->surfaces, out_.mesh_spacing, settings_.stop);
               }).wall_s;
     return mesh;
   }
@@ -108,58 +126,51 @@ class Measurement {
   void add_peers() {
     EngineFigures figures;
     std::unique_ptr<RayEngine> engine;
-    figures.name = "embree round cones";
+    figures.name = cones;
     figures.primitives = workload_.size();
     figures.build_s = cost_of([&] { engine = embree_round_cones(workload_.flattened(), settings_.threads); }).wall_s;
     add_racer(figures, std::move(engine));
-    if (!(out_.mesh_spacing > 0)) return;
+    if (!(out_.mesh_spacing > 0) || is_stopped()) return;
     say("meshing");
     figures.name = "embree triangles";
     const TriangleMesh mesh = mesh_of_scene(figures.mesh_s);
+    if (is_stopped()) return;
     figures.primitives = mesh.triangles.size();
     figures.build_s =
         cost_of([&] { engine = embree_triangles(mesh, workload_.thinnest_radius() / 20, settings_.threads); }).wall_s;
     add_racer(figures, std::move(engine));
   }
 
-  // What one more sample of each pixel costs: sixteen samples less one, so that what is done once cancels. Fifteen go
-  // together, in the second pass of render(); the rays of a single sample go to the pixels' middles, as sixteen have to
-  // beside their own.
-  Cost further_sample(const PreparedScene& ready) const {
-    RenderSettings render_settings = ready.description.render;
-    const auto film = [&](int samples) {
-      render_settings.samples_per_pixel = samples;
-      return cost_of([&] { render(ready.render_scene, render_settings, {.crop = {}, .threads = settings_.threads}); });
-    };
-    const Cost one = film(1), many = film(16);
-    return {(many.wall_s - one.wall_s) / 15, (many.cpu_s - one.cpu_s) / 15};
+  TwoRuns further_sample(const PreparedScene& ready) const {
+    return sixteen_samples_and_one(ready, settings_.threads, settings_.stop);
   }
 
   // Evaluations are counted beside the race, because counting takes time.
   template <class Frame>
-  static void recorded(const PreparedScene& ready, RayCounts& counts, const Frame& frame) {
-    const RayCounts again = frame(*recording_engine_of(*ready.surfaces));
-    counts.evaluations = again.evaluations;
-    counts.uncertified = again.uncertified;
+  static RayProof recorded(const PreparedScene& ready, const Frame& frame) {
+    const RayCounts counts = frame(*recording_engine_of(*ready.surfaces));
+    return {counts.evaluations, counts.uncertified};
   }
 
   void race_frames(const PreparedScene& ready) {
     further_sample(ready);  // samples beside the pixels' middles enter cells of their own
-    std::vector<Cost> samples;
-    for (int round = 0; round < settings_.rounds; ++round) {
+    std::vector<TwoRuns> samples;
+    for (int round = 0; round < settings_.rounds && !is_stopped(); ++round) {
       say(fmt::format("frames, round {} of {}", round + 1, settings_.rounds));
       for (Racer& r : racers_)
         r.frames.push_back(cost_of([&] { r.figures.frame = shaded_frame(*r.engine, workload_, frame_); }));
       samples.push_back(further_sample(ready));
     }
+    const Costs sample = further_sample_costs(samples), own = whole_costs(racers_.front().frames);
+    out_.sample = median(sample);
     for (Racer& r : racers_) {
+      const Costs frames = whole_costs(r.frames);
       r.figures.frame_cost = median(r.frames);
-      r.figures.frame_ratio = median_ratio(racers_.front().frames, r.frames);
+      r.figures.frame_ratio = median_ratio(own, frames);
+      if (r.figures.name == cones) out_.sample_over_cones = median_ratio(sample, frames);
     }
-    out_.sample = median(samples);
-    recorded(ready, racers_.front().figures.frame,
-             [&](const RayEngine& engine) { return shaded_frame(engine, workload_, frame_); });
-    if (racers_.size() > 1) out_.sample_over_cones = median_ratio(samples, racers_[1].frames);
+    racers_.front().figures.frame_proof =
+        recorded(ready, [&](const RayEngine& engine) { return shaded_frame(engine, workload_, frame_); });
   }
 
   void race_bounces(const PreparedScene& ready) {
@@ -168,21 +179,19 @@ class Measurement {
       diffuse_paths(*r.engine, r.starts, bounces_of_a_path, frame_);  // bounces enter cells of their own
       r.engine->refine();
     }
-    for (int round = 0; round < settings_.rounds; ++round) {
+    for (int round = 0; round < settings_.rounds && !is_stopped(); ++round) {
       say(fmt::format("bounces, round {} of {}", round + 1, settings_.rounds));
-      for (Racer& r : racers_) {
-        const Cost cost =
-            cost_of([&] { r.figures.bounces = diffuse_paths(*r.engine, r.starts, bounces_of_a_path, frame_); });
-        r.bounces.push_back(per_ray(cost, r.figures.bounces.rays));
-      }
-    }
-    for (Racer& r : racers_) {
-      r.figures.bounce_cost = median(r.bounces);
-      r.figures.bounce_ratio = median_ratio(racers_.front().bounces, r.bounces);
+      for (Racer& r : racers_)
+        r.bounces.push_back(
+            cost_of([&] { r.figures.bounces = diffuse_paths(*r.engine, r.starts, bounces_of_a_path, frame_); }));
     }
     Racer& own = racers_.front();
-    recorded(ready, own.figures.bounces,
-             [&](const RayEngine& engine) { return diffuse_paths(engine, own.starts, bounces_of_a_path, frame_); });
+    for (Racer& r : racers_) {
+      r.figures.bounce_cost = per_ray(median(r.bounces), r.figures.bounces.rays);
+      r.figures.bounce_ratio = bounce_ratio(own, r);
+    }
+    own.figures.bounce_proof = recorded(
+        ready, [&](const RayEngine& engine) { return diffuse_paths(engine, own.starts, bounces_of_a_path, frame_); });
   }
 
   void describe_surfaces(const PreparedScene& ready) {
@@ -213,15 +222,16 @@ class Measurement {
     if (!sum) return;
     further_sample(*sum);
     for (const Rule& rule : rules) {
+      if (is_stopped()) return;
       const auto ready = with(rule.text);
       if (!ready) continue;
       further_sample(*ready);
-      std::vector<Cost> ours, sums;
-      for (int round = 0; round < settings_.rounds; ++round) {
+      std::vector<TwoRuns> ours, sums;
+      for (int round = 0; round < settings_.rounds && !is_stopped(); ++round) {
         ours.push_back(further_sample(*ready));
         sums.push_back(further_sample(*sum));
       }
-      out_.rules.push_back({rule.name, median_ratio(ours, sums)});
+      out_.rules.push_back({rule.name, median_ratio(further_sample_costs(ours), further_sample_costs(sums))});
     }
   }
 
@@ -246,18 +256,23 @@ Result<std::vector<WorkloadFigures>> run_benchmark(const std::vector<Workload>& 
   const auto measure = [&](const Workload& workload, const BenchSettings& how) -> Status {
     auto figures = Measurement(workload, how, folder.path(), tell).run();
     if (!figures) return figures.why();
-    found(*figures);
-    all.push_back(std::move(*figures));
+    if (!*figures) return Done{};
+    found(**figures);
+    all.push_back(std::move(**figures));
     return Done{};
   };
-  for (const Workload& w : workloads)
+  for (const Workload& w : workloads) {
+    if (settings.stop.is_made()) return all;
     if (auto status = measure(w, settings); !status) return status.why();
+  }
   BenchSettings scaling = settings;
   scaling.mesh_spacing = 0;
   scaling.povray = scaling.rules = false;
   for (std::size_t count = 1000; count <= settings.largest_scaling; count *= 10)
-    for (const Workload& w : {strands(count), tufts(count)})
+    for (const Workload& w : {strands(count), tufts(count)}) {
+      if (settings.stop.is_made()) return all;
       if (auto status = measure(w, scaling); !status) return status.why();
+    }
   return all;
 }
 

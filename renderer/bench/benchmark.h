@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include "field/base/result.h"
 #include "renderer/bench/cost.h"
 #include "renderer/bench/ray_engine.h"
+#include "renderer/bench/stop_request.h"
 #include "renderer/bench/workload.h"
 
 namespace marrow {
@@ -26,6 +28,13 @@ struct BenchSettings {
   bool rules = true;                ///< rules for `alpha` against the plain sum
   bool many_samples = false;        ///< whole processes with `samples` samples too: minutes
   std::size_t largest_scaling = 0;  ///< strands of 10^3, 10^4, ... segments up to this many; 0: none
+  StopRequest stop = {};            ///< the workload at work is given up, those after it are not begun
+};
+
+/// What only Marrow tells of its rays.
+struct RayProof {
+  std::uint64_t evaluations = 0;  ///< of the field, for the nearest hits
+  std::uint64_t uncertified = 0;  ///< rays for which it is not proved that nothing was skipped
 };
 
 /// An engine on a workload. Cost of a frame: a ray through each pixel and a shadow ray from each hit that faces the
@@ -37,24 +46,26 @@ struct EngineFigures {
   double build_s = 0;          ///< wall time until rays can be traced, without meshing
   RayCounts frame;
   Cost frame_cost;
-  RayCounts bounces;  ///< rays of diffuse paths from the frame's hits
-  Cost bounce_cost;
-  Ratio frame_ratio, bounce_ratio;  ///< Marrow's cost of a ray over this engine's; of Marrow itself 1
+  std::optional<RayProof> frame_proof;
+  RayCounts bounces;                ///< rays of diffuse paths from the frame's hits
+  std::optional<Cost> bounce_cost;  ///< of a ray; nothing when the frame has no hits
+  std::optional<RayProof> bounce_proof;
+  Ratio frame_ratio, bounce_ratio;  ///< Marrow's cost of a ray over this engine's
 };
 
 /// A whole process, from its start to its end.
 struct ProcessFigures {
   std::string name;
-  int samples = 0;  ///< per pixel
+  int samples = 0;  ///< per pixel, as many as it really took
   Cost cost;
   std::size_t peak_bytes = 0;
-  Ratio ratio;  ///< its cost over Marrow's with the same number of samples; of Marrow itself 1
+  Ratio ratio;  ///< its cost over Marrow's with the same number of samples
 };
 
 /// A rule for `alpha` against the plain sum.
 struct RuleFigures {
   std::string alpha;
-  Ratio over_sum;  ///< of frames
+  Ratio over_sum;  ///< of further samples
 };
 
 struct WorkloadFigures {
@@ -67,7 +78,7 @@ struct WorkloadFigures {
   std::size_t cells = 0, blocks = 0;   ///< cells; those that the first frame's rays entered
   std::size_t bytes = 0;               ///< of the surfaces, after the first frame
   double largest_error = 0;            ///< certified bound of the traced field's error
-  Cost sample;                         ///< one further sample of each pixel in a whole render, film and light included
+  MaybeCost sample;                    ///< one further sample of each pixel in a whole render, film and light included
   Ratio sample_over_cones;             ///< `sample` over the frame of Embree's round cones
   std::vector<EngineFigures> engines;  ///< Marrow first
   std::vector<RuleFigures> rules;      ///< of `alpha`
@@ -75,8 +86,9 @@ struct WorkloadFigures {
   std::vector<std::string> missing;       ///< what could not be compared, and why
 };
 
-/// `tell` hears what is being done, `found` each workload's figures as soon as they are there. Errors: a workload of
-/// which Marrow makes no scene, a folder for temporary files that cannot be used.
+/// `tell` hears what is being done, `found` each workload's figures as soon as they are there. When asked to stop it
+/// returns the workloads that are finished, and leaves no temporary file. Errors: a workload of which Marrow makes no
+/// scene, a folder for temporary files that cannot be used.
 Result<std::vector<WorkloadFigures>> run_benchmark(const std::vector<Workload>&, const BenchSettings&,
                                                    const std::function<void(const std::string&)>& tell,
                                                    const std::function<void(const WorkloadFigures&)>& found);

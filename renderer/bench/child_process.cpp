@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -47,18 +49,20 @@ std::size_t peak_of(pid_t process) {
   return 0;
 }
 
-// Looks at a child's memory while it runs. What wait4() tells would not do: a child starts as a copy of its parent, and
-// the parent's peak stays the least that it can report.
-class MemoryWatch {
+// Looks at a child's memory while it runs, and hands a request to stop on to it. What wait4() tells of memory would not
+// do: a child starts as a copy of its parent, and the parent's peak stays the least that it can report.
+class ChildWatch {
  public:
-  explicit MemoryWatch(pid_t process)
-      : thread_([this, process](const std::stop_token& stop) {
-          while (!stop.stop_requested()) {
+  ChildWatch(pid_t process, StopRequest request)
+      : thread_([this, process, request](const std::stop_token& ended) {
+          for (bool is_told = false; !ended.stop_requested();) {
+            if (request.is_made() && !std::exchange(is_told, true)) kill(process, SIGTERM);
             peak_ = std::max(peak_.load(), peak_of(process));
             std::this_thread::sleep_for(std::chrono::milliseconds(4));
           }
         }) {}
-  std::size_t stop() {
+  /// The most memory that was seen.
+  std::size_t end() {
     thread_.request_stop();
     thread_.join();
     return peak_;
@@ -81,8 +85,8 @@ std::optional<std::filesystem::path> find_program(const std::string& name) {
   return std::nullopt;
 }
 
-std::optional<ChildResult> run_program(const std::filesystem::path& program,
-                                       const std::vector<std::string>& arguments) {
+std::optional<ChildResult> run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                                       StopRequest stop) {
   std::vector<std::string> words{program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -92,12 +96,14 @@ std::optional<ChildResult> run_program(const std::filesystem::path& program,
   const auto start = std::chrono::steady_clock::now();
   pid_t child = 0;
   if (posix_spawn(&child, program.c_str(), files.get(), nullptr, argv.data(), environ) != 0) return std::nullopt;
-  MemoryWatch memory(child);
+  ChildWatch watch(child, stop);
+  siginfo_t end{};
+  waitid(P_PID, static_cast<id_t>(child), &end, WEXITED | WNOWAIT);  // its number stays its own while it is watched
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  const std::size_t peak = watch.end();
   int status = 0;
   rusage used{};
   const bool ended = wait4(child, &status, 0, &used) == child;
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  const std::size_t peak = memory.stop();
   if (!ended || !WIFEXITED(status) || WEXITSTATUS(status) != 0) return std::nullopt;
   return ChildResult{{wall.count(), seconds(used.ru_utime) + seconds(used.ru_stime)}, peak};
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "renderer/bench/cost.h"
+#include "renderer/bench/stop_request.h"
 
 namespace marrow {
 
@@ -19,8 +20,10 @@ struct ChildResult {
 /// The program found on $PATH.
 std::optional<std::filesystem::path> find_program(const std::string& name);
 
-/// Runs the program with its output thrown away, and waits. Nothing when it cannot be started or does not end with 0.
-std::optional<ChildResult> run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments);
+/// Runs the program with its output thrown away, and waits; asks it to end (SIGTERM) when a stop is asked for. Nothing
+/// when it cannot be started or does not end with 0.
+std::optional<ChildResult> run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                                       StopRequest stop = {});
 
 /// The program that is running.
 std::filesystem::path this_program();

@@ -21,7 +21,8 @@ struct Crossing {
 // surface it meets is one seen from outside.
 class Flood {
  public:
-  Flood(const Surfaces& surfaces, double spacing) : surfaces_(surfaces), spacing_(spacing) {
+  Flood(const Surfaces& surfaces, double spacing, StopRequest stop)
+      : surfaces_(surfaces), spacing_(spacing), stop_(stop) {
     const Box3 box = surfaces.bounds();
     for (std::size_t i = 0; i < 3; ++i) {
       // Surfaces may swell beyond the bounds: an eighth of the size, and two cubes
@@ -36,7 +37,7 @@ class Flood {
 
   void run() {
     reach({0, 0, 0});
-    while (!front_.empty()) {
+    while (!front_.empty() && !stop_.is_made()) {
       const Index corner = front_.back();
       front_.pop_back();
       for (std::size_t axis = 0; axis < 3; ++axis)
@@ -98,6 +99,7 @@ class Flood {
 
   const Surfaces& surfaces_;
   double spacing_;
+  StopRequest stop_;
   Vec3d lower_;
   Index count_{};
   std::vector<std::uint8_t> known_;
@@ -114,8 +116,8 @@ std::array<std::uint32_t, 4> cubes_around(const Crossing& c, const Flood& grid) 
 
 }  // namespace
 
-TriangleMesh dual_mesh(const Surfaces& surfaces, double spacing) {
-  Flood grid(surfaces, spacing);
+TriangleMesh dual_mesh(const Surfaces& surfaces, double spacing, StopRequest stop) {
+  Flood grid(surfaces, spacing, stop);
   grid.run();
   TriangleMesh mesh;
   std::vector<std::uint32_t> vertex_of(grid.corner_count(), none), weight;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/bench/ray_engine.h"
+#include "renderer/bench/stop_request.h"
 #include "renderer/geometry/surfaces.h"
 
 namespace marrow {
@@ -9,7 +10,7 @@ namespace marrow {
 /// A dual mesh on a grid of the given spacing: one vertex in each cube that the surface crosses, the mean of its
 /// crossings with the cube's edges; these are roots that the tracer found, so the mesh has its exactness at the edges.
 /// [Gibson 1998, surface nets] Hollows that no path along grid edges reaches from outside are left out, and so are
-/// sheets thinner than an edge.
-TriangleMesh dual_mesh(const Surfaces&, double spacing);
+/// sheets thinner than an edge. When asked to stop it is a part of the mesh.
+TriangleMesh dual_mesh(const Surfaces&, double spacing, StopRequest stop = {});
 
 }  // namespace marrow

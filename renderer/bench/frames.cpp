@@ -41,6 +41,7 @@ RayCounts counted(const FrameSettings& settings, const Range& range, const Body&
                                     static_cast<std::size_t>(settings.threads));
   tbb::task_arena(settings.threads).execute([&] {
     const auto work = [&](const Range& part) {
+      if (settings.stop.is_made()) return;
       RayCounts counts;
       body(part, counts);
       const std::lock_guard lock(mutex);
@@ -139,7 +140,7 @@ std::vector<EngineHit> hits_of_frame(const RayEngine& engine, const Workload& wo
   const Camera camera(workload, settings.size);
   std::vector<EngineHit> hits;
   RayCounts unused;
-  for (int y = 0; y < settings.size; y += block_side)
+  for (int y = 0; y < settings.size && !settings.stop.is_made(); y += block_side)
     for (int x = 0; x < settings.size; x += block_side)
       for_each_pixel(Pixels(y, std::min(y + block_side, settings.size), x, std::min(x + block_side, settings.size)),
                      [&](int px, int py) {

@@ -4,12 +4,14 @@
 #include <vector>
 
 #include "renderer/bench/ray_engine.h"
+#include "renderer/bench/stop_request.h"
 
 namespace marrow {
 
 struct FrameSettings {
   int size = 1024;  ///< pixels of a side
   int threads = 2;
+  StopRequest stop{};  ///< blocks of pixels or hits that have not begun are left out
 };
 
 /// One ray through the middle of each pixel, and one shadow ray from each hit that faces the sun; those of a block of

@@ -20,8 +20,8 @@ struct RayCounts {
   std::uint64_t rays = 0;         ///< for the nearest hit
   std::uint64_t hits = 0;         ///< of these rays
   std::uint64_t shadow_rays = 0;  ///< for any hit
-  std::uint64_t evaluations = 0;  ///< of the field, for the nearest hits; 0 for engines that do not count them
-  std::uint64_t uncertified = 0;  ///< rays for which it is not proved that nothing was skipped
+  std::uint64_t evaluations = 0;  ///< of the field, for the nearest hits; only of recording_engine_of()
+  std::uint64_t uncertified = 0;  ///< rays for which it is not proved that nothing was skipped; likewise
   double light = 0;               ///< sum of all shades: nothing may be optimised away
 
   RayCounts& operator+=(const RayCounts&);

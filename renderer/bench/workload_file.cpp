@@ -22,16 +22,18 @@ struct Named {
 };
 constexpr Named table[] = {{"w1", creature}, {"w2", hair}, {"w3", balls}};
 
-std::string text(const Vec3d& p) { return fmt::format("[{:.10g}, {:.10g}, {:.10g}]", p.x, p.y, p.z); }
+// As many digits as tell the number from its neighbours: what is rendered is what was read.
+std::string text(const Vec3d& p) { return fmt::format("[{}, {}, {}]", p.x, p.y, p.z); }
+std::string direction_text(const Vec3d& p) { return fmt::format("[{:.10g}, {:.10g}, {:.10g}]", p.x, p.y, p.z); }
 
 void write_head(std::ostream& out, const Workload& w, int film_size) {
-  const double fov_deg = 2 * atan(w.tan_half_fov) * 57.29577951308232;
   fmt::print(out,
              "# {}\nmarrow: 1\ncamera: {{from: {}, to: {}, fov: {:.10g}}}\nfilm: {{size: [{}, {}]}}\n"
              "render: {{integrator: direct, spp: 16}}\n"
              "lights:\n  - sun: {{direction: {}, angle: 0, irradiance: 3}}\n"
              "materials:\n  white: {{diffuse: {{color: 0.8}}}}\n",
-             w.about, text(w.eye), text({w.eye.x, w.eye.y, 0}), fov_deg, film_size, film_size, text(w.toward_light));
+             w.about, text(w.eye), text(w.looked_at()), w.fov_deg(), film_size, film_size,
+             direction_text(w.toward_light));
 }
 
 // One blend as the field of the object; or, of a placed workload, by name, and the places that use it.
@@ -52,10 +54,10 @@ bool continues(const SegmentSkeleton& before, const SegmentSkeleton& s) {
 
 // Segments that follow each other are one polyline, one strand for rules that ask for directions.
 void write_polyline(std::ostream& out, std::span<const SegmentSkeleton> chain) {
-  std::string points = text(chain.front().from), radii = fmt::format("{:.10g}", chain.front().radius_from);
+  std::string points = text(chain.front().from), radii = fmt::format("{}", chain.front().radius_from);
   for (const auto& s : chain) {
     points += ", " + text(s.to);
-    radii += fmt::format(", {:.10g}", s.radius_to);
+    radii += fmt::format(", {}", s.radius_to);
   }
   fmt::print(out, "          - polyline: {{points: [{}], radius: [{}]}}\n", points, radii);
 }
@@ -66,8 +68,7 @@ void write_primitives(std::ostream& out, const Workload& w) {
     for (end = begin + 1; end < all.size() && continues(all[end - 1], all[end]);) ++end;
     write_polyline(out, all.subspan(begin, end - begin));
   }
-  for (const auto& p : w.points)
-    fmt::print(out, "          - point: {{at: {}, radius: {:.10g}}}\n", text(p.at), p.radius);
+  for (const auto& p : w.points) fmt::print(out, "          - point: {{at: {}, radius: {}}}\n", text(p.at), p.radius);
 }
 
 // A segment that begins where the one before it ended continues its branch; a root without children is a point.
@@ -76,13 +77,12 @@ void write_swc(std::ostream& out, const Workload& w) {
   const SegmentSkeleton* before = nullptr;
   for (const auto& s : w.segments) {
     if (before == nullptr || !continues(*before, s))
-      fmt::print(out, "{} 0 {:.10g} {:.10g} {:.10g} {:.10g} -1\n", ++id, s.from.x, s.from.y, s.from.z, s.radius_from);
-    fmt::print(out, "{} 0 {:.10g} {:.10g} {:.10g} {:.10g} {}\n", id + 1, s.to.x, s.to.y, s.to.z, s.radius_to, id);
+      fmt::print(out, "{} 0 {} {} {} {} -1\n", ++id, s.from.x, s.from.y, s.from.z, s.radius_from);
+    fmt::print(out, "{} 0 {} {} {} {} {}\n", id + 1, s.to.x, s.to.y, s.to.z, s.radius_to, id);
     ++id;
     before = &s;
   }
-  for (const auto& p : w.points)
-    fmt::print(out, "{} 0 {:.10g} {:.10g} {:.10g} {:.10g} -1\n", ++id, p.at.x, p.at.y, p.at.z, p.radius);
+  for (const auto& p : w.points) fmt::print(out, "{} 0 {} {} {} {} -1\n", ++id, p.at.x, p.at.y, p.at.z, p.radius);
 }
 
 Status written(std::ofstream& out, const std::filesystem::path& path) {
@@ -109,6 +109,10 @@ Box3 Workload::bounds() const {
   for (const Vec3d& p : places) all.include(Box3{box.lower + p, box.upper + p});
   return all;
 }
+
+Vec3d Workload::looked_at() const { return {eye.x, eye.y, eye.z >= 1 ? 0 : eye.z - 1}; }
+
+double Workload::fov_deg() const { return 2 * atan(tan_half_fov) * 57.29577951308232; }
 
 double Workload::thinnest_radius() const {
   double least = std::numeric_limits<double>::infinity();
@@ -139,8 +143,9 @@ std::vector<std::string> workload_names() {
 Result<Workload> workload_named(std::string_view name) {
   for (const Named& n : table)
     if (name == n.name) return n.make();
-  return failure("there is no workload \"" + std::string(name) +
-                 "\"; there are w1, w2 and w3, and files that end with .txt or as skeletons do");
+  Diagnostic unknown = failure("there is no workload `" + std::string(name) + "`");
+  unknown.hint = fmt::format("there are {}, and files of skeletons", fmt::join(workload_names(), ", "));
+  return unknown;
 }
 
 Status write_scene(const Workload& w, int film_size, const std::filesystem::path& scene) {

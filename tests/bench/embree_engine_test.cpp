@@ -1,4 +1,5 @@
 // The peers answer: the limit is a union of round cones, and the loops count what they ask.
+#include <atomic>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -65,6 +66,17 @@ TEST(Frames, OfAnySizeAskForEachPixelOnce) {
     EXPECT_EQ(frame.rays, static_cast<std::uint64_t>(size) * static_cast<std::uint64_t>(size));
     EXPECT_EQ(frame.hits, hits_of_frame(*engine, one_of_each(), {size, 1}).size());
   }
+}
+
+TEST(Frames, AskForNothingMoreAfterAStop) {
+  const auto engine = embree_round_cones(one_of_each(), 1);
+  ASSERT_TRUE(engine);
+  const auto hits = hits_of_frame(*engine, one_of_each(), {64, 2});
+  const std::atomic<bool> flag = true;
+  const FrameSettings stopped{64, 2, {&flag}};
+  EXPECT_EQ(shaded_frame(*engine, one_of_each(), stopped).rays, 0u);
+  EXPECT_TRUE(hits_of_frame(*engine, one_of_each(), stopped).empty());
+  EXPECT_EQ(diffuse_paths(*engine, hits, 4, stopped).rays, 0u);
 }
 
 TEST(EmbreeEngine, MeetsTriangles) {

@@ -1,9 +1,11 @@
 // Workloads of the peers' text and of skeleton files, and what is said of those that are wrong.
 #include "renderer/bench/workload_reader.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -12,9 +14,9 @@ namespace marrow {
 namespace {
 
 Workload read(const std::string& text, const std::string& name) {
-  auto w = read_workload(text, name);
-  EXPECT_TRUE(w) << w.why().front().message;
-  return w ? std::move(*w) : Workload{};
+  auto file = read_workload(text, name);
+  EXPECT_TRUE(file) << file.why().front().message;
+  return file ? std::move(file->workload) : Workload{};
 }
 
 TEST(WorkloadReader, ReadsThePeersText) {
@@ -76,8 +78,70 @@ TEST(WorkloadReader, TellsEveryMistake) {
   EXPECT_FALSE(read_workload("", "empty.swc"));
 }
 
+// Numbers that no scene takes are told with their words, so that nothing is run that would not end well.
+TEST(WorkloadReader, RefusesWhatScenesRefuse) {
+  struct Case {
+    const char* text;
+    int column;
+    const char* says;
+  };
+  for (const Case& c : {Case{"pt 1e20 0 0 1\n", 4, "`1e20`"},
+                        {"pt 0 0 0 1e16\n", 10, "`1e16`"},
+                        {"seg 0 0 0 1 0 -2e15 0 1\n", 15, "`-2e15`"},
+                        {"pt 0 0 0 0\n", 10, "radius `0`"},
+                        {"seg 0 0 0 1 1 0 0 1 -5\n", 21, "strength `-5`"},
+                        {"pt 0 0 0 1 0\n", 12, "strength `0`"},
+                        {"cam 0 0 9 1e9\n", 11, "`1e9`"},
+                        {"cam 0 0 9 1e-9\n", 11, "`1e-9`"},
+                        {"cam 0 0 -1e15 1\n", 9, "1e15"},
+                        {"cam 1e16 0 0 1\n", 5, "`1e16`"}}) {
+    const auto w = read_workload(std::string(c.text) + "pt 0 0 0 1\n", "a.txt");
+    ASSERT_FALSE(w) << c.text;
+    ASSERT_EQ(w.why().size(), 1u);
+    const Diagnostic& d = w.why().front();
+    EXPECT_EQ(d.where, (SourceLocation{"a.txt", 1, c.column})) << c.text;
+    EXPECT_NE(d.message.find(c.says), std::string::npos) << d.message;
+    EXPECT_FALSE(d.hint.empty());
+  }
+  EXPECT_FALSE(read_workload("pt 9e14 0 0 1\npt -9e14 0 0 1\n", "large.txt"));  // no eye could see all of it
+  EXPECT_FALSE(read_workload("1 0 9e14 0 0 1 -1\n2 0 -9e14 0 0 1 1\n", "large.swc"));
+  EXPECT_FALSE(read_workload("1 0 0 0 0 1 -1\n2 0 0 0 0 1 1\n", "nothing.swc"));
+  EXPECT_EQ(read("light 1e-200 0 0\npt 0 0 0 1\n", "a.txt").toward_light, (Vec3d{1, 0, 0}));
+}
+
+TEST(WorkloadReader, HandsOnWarningsOfSkeletons) {
+  const auto made = read_workload("1 0 0 0 0 0 -1\n2 0 2 0 0 1 1\n", "n.swc");
+  ASSERT_TRUE(made);
+  ASSERT_EQ(made->warnings.size(), 1u);
+  EXPECT_EQ(made->warnings[0].severity, Severity::Warning);
+  EXPECT_NE(made->warnings[0].message.find("radius 0"), std::string::npos);
+  EXPECT_NE(made->warnings[0].hint.find("bench takes none"), std::string::npos);
+  EXPECT_TRUE(read_workload("1 0 0 0 0 1 -1\n2 0 2 0 0 1 1\n", "n.swc")->warnings.empty());
+  const auto wrong = read_workload("v 0 0 0\nv 1 0 0\nl 1 2\n", "a.obj");
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.why().front().hint.find("bench takes none"), std::string::npos);
+}
+
+TEST(WorkloadReader, SaysWhatThereIs) {
+  const std::string seg = "seg 0 0 0 1 1 0 0 1\n", pt = "pt 0 0 0 1\n";
+  EXPECT_EQ(read(pt, "a/one.txt").about, "1 point of one.txt");
+  EXPECT_EQ(read(seg + seg, "two.txt").about, "2 segments of two.txt");
+  EXPECT_EQ(read(seg + pt + pt, "b.txt").about, "1 segment and 2 points of b.txt");
+}
+
 TEST(WorkloadReader, KnowsFilesByTheirEndings) {
-  for (const char* name : {"a.txt", "a.swc", "b/c.OBJ"}) EXPECT_TRUE(is_workload_file(name));
+  for (const char* name : {"a.txt", "a.TXT", "a.swc", "b/c.OBJ"}) EXPECT_TRUE(is_workload_file(name));
+  // Those that are told of are those that are taken
+  std::string words(workload_endings);
+  std::ranges::replace(words, ',', ' ');
+  std::istringstream all(words);
+  int count = 0;
+  for (std::string word; all >> word;) {
+    if (word == "and") continue;
+    EXPECT_TRUE(is_workload_file("a" + word)) << word;
+    ++count;
+  }
+  EXPECT_EQ(count, 10);
   for (const char* name : {"w1", "a.yaml", "txt"}) EXPECT_FALSE(is_workload_file(name));
 }
 

@@ -9,6 +9,7 @@
 
 #include "renderer/bench/python_random.h"
 #include "renderer/bench/workload.h"
+#include "renderer/scene/read_scene.h"
 
 namespace marrow {
 namespace {
@@ -82,6 +83,24 @@ TEST(Workloads, PlacedBodiesFlatten) {
   EXPECT_LT(length(flat.bounds().upper - w.bounds().upper), 1e-12);
 }
 
+// The scene's camera stands where the frame's eye does, and looks where it looks: along -z.
+TEST(Workloads, AreSeenAlikeInScenes) {
+  const auto folder = std::filesystem::temp_directory_path() / ("marrow-views-" + std::to_string(getpid()));
+  std::filesystem::create_directory(folder);
+  for (const double z : {20.0, 1.0, 0.5, 1e-300, 0.0, -0.1, -20.0, 1e15, -1e13 - 1, 123456789012.0, -123456789012.0}) {
+    Workload w = balls();
+    w.eye = {-.1, 1.0 / 3, z};
+    const auto path = folder / "view.yaml";
+    ASSERT_TRUE(write_scene(w, 16, path));
+    const auto scene = read_scene(path, {});
+    ASSERT_TRUE(scene) << scene.why().front().message;
+    EXPECT_EQ(scene->camera.from, w.eye);
+    EXPECT_EQ(normalize(scene->camera.to - scene->camera.from).vec(), (Vec3d{0, 0, -1})) << z;
+    EXPECT_NEAR(scene->camera.fov_deg, w.fov_deg(), 1e-8);
+  }
+  std::filesystem::remove_all(folder);
+}
+
 TEST(Workloads, BecomeScenes) {
   const auto folder = std::filesystem::temp_directory_path() / ("marrow-workloads-" + std::to_string(getpid()));
   std::filesystem::create_directory(folder);
@@ -91,6 +110,7 @@ TEST(Workloads, BecomeScenes) {
   };
   ASSERT_TRUE(write_scene(balls(), 64, folder / "w3.yaml"));
   EXPECT_NE(text_of("w3.yaml").find("- point: {at: [-2.66379, 2.0815, -1.3873], radius: 0.35384}"), std::string::npos);
+  EXPECT_NE(text_of("w3.yaml").find("camera: {from: [0, 0, 20], to: [0, 0, 0], fov: 26."), std::string::npos);
   ASSERT_TRUE(write_scene(strands(20000), 64, folder / "many.yaml"));
   EXPECT_NE(text_of("many.yaml").find("file: many.swc"), std::string::npos);
   const std::string swc = text_of("many.swc");
