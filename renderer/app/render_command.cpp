@@ -85,7 +85,7 @@ Diagnostics missing_instruction_set(const RenderCommand& command) {
   return {};
 }
 
-// A problem with a place is the scene's; one without is the machine's: an instruction set that is not there.
+// A problem with a place is the scene's; one without is the machine's.
 ExitCode exit_code_of_failed_build(const Diagnostics& why) {
   const bool in_scene = std::any_of(why.begin(), why.end(), [](const auto& d) { return !d.where.file.empty(); });
   return in_scene ? ExitCode::BadInput : ExitCode::Unavailable;

@@ -233,7 +233,7 @@ std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray, RayRecord& r
   visits.clear();
   const PlaneHit plane = nearest_plane(ray);
   const PartHierarchy::Hit found = nearest_on(until(ray, plane.t), &visits);
-  record = record_of(visits, found.undecided, std::min({found.reached, plane.t, ray.t_max}));
+  record = record_of(visits, found.undecided, std::min({found.reached(), plane.t, ray.t_max}));
   return hit_of(found, plane, ray);
 }
 
@@ -275,7 +275,7 @@ void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::option
   for (std::size_t i = 0; i < rays.size(); ++i) {
     ask_again(found[i], before.rays[i], &visits[i]);
     records[i] =
-        record_of(visits[i], found[i].undecided, std::min({found[i].reached, before.plane(i).t, rays[i].t_max}));
+        record_of(visits[i], found[i].undecided, std::min({found[i].reached(), before.plane(i).t, rays[i].t_max}));
   }
   describe(found, before.planes(), rays, hits);
 }

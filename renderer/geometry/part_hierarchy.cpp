@@ -72,7 +72,7 @@ void ask(const RTCIntersectFunctionNArguments* a, const PartsOfSolid& of, const 
   const auto t = of.solid->hit_in_part(part, *visit.ray, false, log);
   if (visit.take(a->geomID, *of.solid, part, t_or_infinity(t), log)) {
     ray.boxes.end_at(visit.last());
-    t_far = embree_t(ray.t_start, visit.best.reached);
+    t_far = embree_t(ray.t_start, visit.best.reached());
   }
   if (log.begins_inside) t_far = done;
 }

@@ -14,12 +14,13 @@ namespace marrow {
 /// found just before, where another part has one, too, and the order in which parts are asked must not matter.
 struct PartHit {
   double t = std::numeric_limits<double>::infinity();
-  double reached = std::numeric_limits<double>::infinity();  ///< t, or `enter` where that is later
   std::size_t solid = 0, element = 0;
   const void* place = nullptr;                                 ///< ElementLog's
   double enter = 0;                                            ///< where the ray came into the part
   double undecided = std::numeric_limits<double>::infinity();  ///< of any part that was visited
   bool found = false, begins_inside = false;  ///< begins_inside: as in ElementLog; then the hit is not one
+
+  double reached() const { return std::max(t, enter); }
 };
 
 /// The ray must stay where it is.
@@ -33,7 +34,7 @@ class PartVisit {
   std::vector<RayVisit>* visits = nullptr;  ///< of all parts, if there is one
 
   /// What lies behind it does not matter any more.
-  double last() const { return std::min(ray->t_max, best.reached); }
+  double last() const { return std::min(ray->t_max, best.reached()); }
 
   /// What a part of the solid is told of the ray.
   ElementLog before(const Solid& solid) const {
@@ -55,12 +56,11 @@ class PartVisit {
     note_side(solid, log);
     best.undecided = std::min(best.undecided, log.undecided);
     const double reached = std::max(t, log.enter);
-    if (!(t < std::numeric_limits<double>::infinity()) || reached > best.reached) return false;
-    if (reached == best.reached &&
+    if (!(t < std::numeric_limits<double>::infinity()) || reached > best.reached()) return false;
+    if (reached == best.reached() &&
         std::tuple(t, index, part.element, log.enter) > std::tuple(best.t, best.solid, best.element, best.enter))
       return false;
     best.t = t;
-    best.reached = reached;
     best.solid = index;
     best.element = part.element;
     best.enter = log.enter;

@@ -123,15 +123,6 @@ TEST(Strands, OfEqualOnesAsManyAreListed) {
   EXPECT_EQ(most, most_strands);
 }
 
-// The sources of points in a level.
-std::size_t points_of(const FieldLevel& level) {
-  std::size_t count = 0;
-  const float* group = level.sources + static_cast<std::ptrdiff_t>(level.curve_groups) * floats_per_group;
-  for (int k = 0; k < level.point_groups; ++k, group += floats_per_group)
-    count += static_cast<std::size_t>(std::count_if(group + 48, group + 64, [](float share) { return share > 0; }));
-  return count;
-}
-
 // Of strands in the middle, and of points about them that tiles count among the far strands though cells list them.
 TEST(Strands, PointsCountOnce) {
   Random random(95);
@@ -145,17 +136,13 @@ TEST(Strands, PointsCountOnce) {
     }
     const Crowd crowd(std::move(blend));
     for (const CellTree::Cell& cell : crowd.stage.cells) {
-      std::vector<std::uint32_t> near;
-      for (const SourceRef ref : crowd.stage.tree.surroundings(cell).near) near.push_back(ref.index());
-      std::sort(near.begin(), near.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return std::pair(crowd.strands.strand_of(a), a) < std::pair(crowd.strands.strand_of(b), b);
-      });
-      const CellStrands seen = crowd.strands.around(*cell.tile, cell.center, cell.half, near);
-      ASSERT_EQ(points_of(StrandsHere(crowd, cell).level.level), seen.points.size());
-      listed += seen.points.size();
+      const StrandedLevel made = make_stranded_level(crowd.context, cell);
+      ASSERT_EQ(static_cast<std::size_t>(made.points.count()), made.seen.points.size());
+      const std::vector<SourceRef> near = crowd.stage.tree.surroundings(cell).near;
+      listed += made.seen.points.size();
       folded += static_cast<std::size_t>(std::ranges::count_if(
-                    near, [&](std::uint32_t p) { return crowd.stage.sources.piece(p).is_point(); })) -
-                seen.points.size();
+                    near, [&](SourceRef ref) { return crowd.stage.sources.piece(ref.index()).is_point(); })) -
+                made.seen.points.size();
     }
   }
   std::cout << "  " << listed << " points count one by one, " << folded << " that cells list with the far strands\n";
