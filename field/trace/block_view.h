@@ -14,15 +14,18 @@ inline constexpr int lanes = 16;
 inline constexpr int floats_per_group = 5 * lanes;  ///< x[16] y[16] z[16] share[16] radius[16]
 inline constexpr float unused_place = 1e3F;  ///< x, y and z of lanes without a source, which have share and radius 0
 
-/// Of a symmetric tensor of degree 8, x^i y^j z^(8-i-j), j faster; as many axes stand for it (strand_axes.h).
-inline constexpr int tensor_components = 45, axis_count = tensor_components;
+/// Of a symmetric tensor of degree 8, x^i y^j z^(8-i-j), j faster: binom(8 + 2, 2). As many axes stand for it
+/// (strand_axes.h).
+inline constexpr int tensor_components = (8 + 2) * (8 + 1) / 2, axis_count = tensor_components;
 /// What a tensor sum f u^8 over strands goes with, behind its components: sums of f, f^2, and f^2 of those that have a
 /// direction.
-inline constexpr int sum_of_f = 45, sum_of_squares = 46, sum_of_directed_squares = 47;
+enum TensorSum { sum_of_f = tensor_components, sum_of_squares, sum_of_directed_squares };
+inline constexpr int tensor_floats = sum_of_directed_squares + 1;
+static_assert(tensor_floats % lanes == 0);  // kernels go through them in whole registers
 /// What stands there behind the weights of axes, in StrandLevel::far: sum f, and over pairs, each counted twice,
 /// f_i f_j (u_i . u_j)^8 and f_i f_j.
-inline constexpr int far_sum = sum_of_f, far_turned_pairs = 46, far_pairs = 47;
-inline constexpr int tensor_floats = 48;
+enum FarSum { far_sum = axis_count, far_turned_pairs, far_pairs };
+static_assert(static_cast<int>(far_pairs) < tensor_floats);
 inline constexpr int most_strands = 512;        ///< that a block lists
 inline constexpr int quadratic_monomials = 10;  ///< 1 x y z xx yy zz xy xz yz
 
