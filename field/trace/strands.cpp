@@ -1,7 +1,6 @@
 #include "field/trace/strands.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -10,6 +9,8 @@
 #include "field/math/elementary.h"
 #include "field/trace/quadrature.h"
 #include "field/trace/strand_axes.h"
+#include "field/trace/strand_places.h"
+#include "field/trace/strand_quadratics.h"
 #include "field/trace/tile.h"
 
 namespace marrow {
@@ -22,79 +23,12 @@ constexpr int nodes_per_piece = 2;
 // Strands that come nearer, in radii of the cube, count one by one in any case.
 constexpr double largest_ratio = 0.35;
 
-// Coefficients of quadratics from values at strand_place, by least squares. The places are symmetric: slopes and mixed
-// terms are means of differences; of the squares x^2 - (x^2 + y^2 + z^2) / 3 comes from the faces, and the constant and
-// the trace from three means.
-struct Fit {
-  std::array<std::array<double, strand_places>, quadratic_monomials> row{};
-
-  Fit() {
-    const double face = static_cast<double>(strand_place[1][0]), corner = static_cast<double>(strand_place[7][0]);
-    const double a = face * face, b = corner * corner;
-    double linear[3] = {}, mixed = 0;
-    for (const auto& p : strand_place) {
-      for (std::size_t i = 0; i < 3; ++i) linear[i] += static_cast<double>(p[i]) * static_cast<double>(p[i]);
-      const double xy = static_cast<double>(p[0]) * static_cast<double>(p[1]);
-      mixed += xy * xy;
-    }
-    // c0 + t q for t = 0, a/3, b with weights 1, 6, 8
-    const double w[3] = {1, 6, 8}, t[3] = {0, a / 3, b};
-    double total = 0, mean = 0, square = 0;
-    for (int k = 0; k < 3; ++k) total += w[k], mean += w[k] * t[k];
-    mean /= total;
-    for (int k = 0; k < 3; ++k) square += w[k] * (t[k] - mean) * (t[k] - mean);
-    for (std::size_t k = 0; k < strand_places; ++k) {
-      const double x[3] = {static_cast<double>(strand_place[k][0]), static_cast<double>(strand_place[k][1]),
-                           static_cast<double>(strand_place[k][2])};
-      const int kind = k == 0 ? 0 : k < 7 ? 1 : 2;
-      const double trace = (t[kind] - mean) / square;
-      row[0][k] = 1 / total - mean * trace;
-      for (std::size_t i = 0; i < 3; ++i) {
-        row[1 + i][k] = x[i] / linear[i];
-        row[4 + i][k] = trace / 3;
-        if (kind == 1) row[4 + i][k] += ((x[i] != 0 ? 0.5 : 0) - 1.0 / 6) / a;
-      }
-      row[7][k] = x[0] * x[1] / mixed;
-      row[8][k] = x[0] * x[2] / mixed;
-      row[9][k] = x[1] * x[2] / mixed;
-    }
-  }
-};
-
-const Fit fit;
-
-// `width` quadratics at once: values by place, coefficients by monomial.
-void fit_quadratics(const float* values, std::size_t width, float* out) {
-  for (std::size_t m = 0; m < quadratic_monomials; ++m) {
-    float* to = out + m * width;
-    std::fill_n(to, width, 0.0F);
-    for (std::size_t k = 0; k < strand_places; ++k) {
-      const auto c = static_cast<float>(fit.row[m][k]);
-      for (std::size_t i = 0; i < width; ++i) to[i] += c * values[k * width + i];
-    }
-  }
-}
-
-// Adds quadratics at x to `out`.
-void add_quadratics(const float* coefficients, std::size_t width, const Vec3d& x, float* out) {
-  const double m[quadratic_monomials] = {1,         x.x,       x.y,       x.z,       x.x * x.x,
-                                         x.y * x.y, x.z * x.z, x.x * x.y, x.x * x.z, x.y * x.z};
-  for (std::size_t k = 0; k < quadratic_monomials; ++k) {
-    const auto c = static_cast<float>(m[k]);
-    for (std::size_t i = 0; i < width; ++i) out[i] += c * coefficients[k * width + i];
-  }
-}
-
 }  // namespace
 
 struct Strands::Cube {
   Vec3d center;
   double half;
-  Vec3d place(std::size_t k) const {
-    return center + Vec3d{static_cast<double>(strand_place[k][0]), static_cast<double>(strand_place[k][1]),
-                          static_cast<double>(strand_place[k][2])} *
-                        half;
-  }
+  Vec3d place(std::size_t k) const { return center + place_in_cube(k) * half; }
 };
 
 struct Strands::Probed {
