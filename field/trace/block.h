@@ -16,7 +16,8 @@
 #include "field/trace/cell_tree.h"
 #include "field/trace/lazy.h"
 #include "field/trace/level_layout.h"
-#include "field/trace/share_patch.h"
+#include "field/trace/share_at.h"
+#include "field/trace/share_patches.h"
 
 namespace marrow {
 

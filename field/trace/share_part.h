@@ -1,4 +1,4 @@
-// What kernels read of the share of the range of angles, in the coordinates of a block: share_patch.h makes it.
+// What kernels read of the share of the range of angles, in the coordinates of a block: share_patches.h makes it.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 namespace marrow {
 
 /// The share of the range of angles in a part of a block, where directions give it: a polynomial in (x - center) /
-/// half, its coefficients in the order of far_field.h. It is the share that is traced; see share_patch.h.
+/// half, its coefficients in the order of far_field.h. It is the share that is traced; see share_patches.h.
 struct alignas(64) SharePatch {
   static constexpr int degree = 4, coefficients = 35;
   float center[3] = {0, 0, 0}, inverse_half = 1;

@@ -1,4 +1,4 @@
-// What the patches of a block are made from, where directions of strands give its angle (share_patch.h).
+// What the patches of a block are made from, where directions of strands give its angle (share_patches.h).
 #pragma once
 
 #include <vector>

@@ -5,7 +5,7 @@ inline constexpr float rounding = 4e-6F;
 // Coordinates up to 1.7 in float are off by 2^-24 as t, as product and as sum; those of sources by 2^-24.
 inline constexpr float position_rounding = 2e-7F;
 
-// How alpha is given: one angle; one for each skeleton; by polynomials of its share of the range (share_patch.h).
+// How alpha is given: one angle; one for each skeleton; by polynomials of its share of the range (share_patches.h).
 enum class Angle { One, Mean, Patched };
 
 // What a sample knows of an angle that varies.

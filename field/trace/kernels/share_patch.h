@@ -1,5 +1,5 @@
 // The share of the range of angles on a ray, where directions give it: a polynomial for each part of a block
-// (share_patch.h of the folder above). Part of block_kernels_<set>.cpp.
+// (share_patches.h). Part of block_kernels_<set>.cpp.
 
 // A polynomial in the way from a place on the ray.
 template <int Degree, class F>
