@@ -10,7 +10,7 @@ struct PatchedAngle {
   const LevelOf<F>& level;
   const ShareOnRun<F>& run;
 
-  // As Marcher::judge(), with the angle of the place.
+  // As Sampler::judge(), with the angle of the place.
   void judge(Sample& p, F y, F dy) const {
     p.share = run.at(p.t);
     const AnglePlace<F> place(block.tables, p.share.c[0], p.s.f, y);

@@ -75,7 +75,7 @@ inline void add_far_slopes(const Far& value, const Slopes (&d)[3], FullSums<F>& 
   s.h[5] += d[1][3];
 }
 
-// As in march.h.
+// As in sampler.h.
 template <class F>
 inline F nearest_distance(F largest_inverse) {
   return 1.0F / root_of(max_of(largest_inverse, 1.0F / 64));

@@ -12,7 +12,7 @@ struct VariedAngle {
   const LocalRay& ray;
   SummedShare& last;  // that was summed on the ray
 
-  // As Marcher::judge(), with the angle of the place.
+  // As Sampler::judge(), with the angle of the place.
   void judge(Sample& p, const OnRay<float> (&at)[3], float y, float dy) const {
     const float low = nominal_margin_at(table_of_end(block, false), p.s.f, y),
                 high = nominal_margin_at(table_of_end(block, true), p.s.f, y);
