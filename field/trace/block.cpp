@@ -177,7 +177,9 @@ unsigned Block::known_surface(std::uint64_t (&octants)[8]) const {
 }
 
 const SharePart& Block::part(int path) const {
-  thread_local LevelCache<1024> cache;
+  // 1024 levels of w2 (26 strands, 870 lanes of sources) take 49 MiB; with most_strands as long they would take 640.
+  constexpr std::size_t most_bytes = std::size_t{64} << 20;
+  thread_local LevelCache<1024> cache(most_bytes);
   return patches_->at(path, context_.kernels, context_.degree, [&]() -> const BlockLevel& {
     return cache.get(serial_, [&](LevelBuffer& buffer) {
       return write_stranded_level(make_stranded_level(context_, cell_), in(buffer));

@@ -4,37 +4,21 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <new>
+#include <limits>
 
 #include "field/trace/block_level.h"
+#include "field/trace/level_buffer.h"
 
 namespace marrow {
 
-/// Room for one level after another, 64-byte aligned.
-class LevelBuffer {
- public:
-  float* allocate(std::size_t float_count) {
-    if (float_count > capacity_) {
-      data_.reset(static_cast<float*>(::operator new(float_count * sizeof(float), alignment)));
-      capacity_ = float_count;
-    }
-    return data_.get();
-  }
-
- private:
-  static constexpr std::align_val_t alignment{64};
-  struct Free {
-    void operator()(float* p) const { ::operator delete(p, alignment); }
-  };
-  std::unique_ptr<float, Free> data_;
-  std::size_t capacity_ = 0;
-};
-
-/// For one thread: the `Count` levels that it has made last. What it returns is good until this thread asks again.
+/// For one thread: the `Count` levels that it has made last, or fewer where these take more than `most_bytes`: then the
+/// oldest are freed. What it returns is good until this thread asks again; without a limit, until it has asked for
+/// `Count` others.
 template <std::size_t Count>
 class LevelCache {
  public:
+  explicit LevelCache(std::size_t most_bytes = std::numeric_limits<std::size_t>::max()) : most_bytes_(most_bytes) {}
+
   /// `make(buffer)` returns a BlockLevel that lies in the buffer. `block` is the serial number of the block: the
   /// address of one that is gone may soon be that of another.
   template <class Make>
@@ -42,13 +26,20 @@ class LevelCache {
     std::uint16_t& place = places_[block * 0x9e3779b97f4a7c15U >> shift];
     if (entries_[place].block == block) return entries_[place].level;
     place = next_;
-    next_ = static_cast<std::uint16_t>((next_ + 1U) % Count);
+    next_ = after(next_);
     Entry& entry = entries_[place];
     entry.block = 0;
+    bytes_ -= entry.buffer.bytes();
     entry.level = make(entry.buffer);
+    bytes_ += entry.buffer.bytes();
     entry.block = block;
+    for (std::uint16_t oldest = next_; bytes_ > most_bytes_ && oldest != place; oldest = after(oldest))
+      free(entries_[oldest]);
     return entry.level;
   }
+
+  /// Of all levels: `most_bytes` at most, or those of the last one alone.
+  std::size_t bytes() const { return bytes_; }
 
  private:
   static constexpr int bits = 10, shift = 64 - bits;
@@ -57,9 +48,16 @@ class LevelCache {
     LevelBuffer buffer;
     BlockLevel level;
   };
+  static std::uint16_t after(std::uint16_t entry) { return static_cast<std::uint16_t>((entry + 1U) % Count); }
+  void free(Entry& entry) {
+    bytes_ -= entry.buffer.bytes();
+    entry = {};
+  }
+
   std::array<Entry, Count> entries_;
   std::array<std::uint16_t, std::size_t{1} << bits> places_{};  // where a block may be, by its number
   std::uint16_t next_ = 0;
+  std::size_t most_bytes_, bytes_ = 0;
 };
 
 }  // namespace marrow

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "field/trace/far_field.h"
-#include "field/trace/level_cache.h"
+#include "field/trace/level_buffer.h"
 #include "field/trace/strand_places.h"
 
 namespace marrow {

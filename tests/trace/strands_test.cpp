@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "field/trace/level_cache.h"
+#include "field/trace/level_buffer.h"
 #include "field/trace/stranded_level.h"
 #include "tests/trace/stage.h"
 
