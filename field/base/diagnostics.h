@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace marrow {
@@ -27,6 +28,12 @@ struct Diagnostic {
 };
 
 using Diagnostics = std::vector<Diagnostic>;
+
+/// The same, with what would be right.
+inline Diagnostic with_hint(Diagnostic d, std::string hint) {
+  d.hint = std::move(hint);
+  return d;
+}
 
 /// `file:line:col: error: message`, the line of the file, a caret under the place, and the hint.
 /// `text` is the whole text of the file; an empty text leaves line and caret out.

@@ -26,12 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Diagnostic with_hint(std::string message, std::string hint) {
-  Diagnostic d = failure(std::move(message));
-  d.hint = std::move(hint);
-  return d;
-}
-
 struct Chosen {
   std::vector<Workload> workloads;
   SourceCache sources;
@@ -54,10 +48,11 @@ bool is_name_of_file(const std::string& name) {
 Diagnostic not_a_skeleton(const std::string& name) {
   const auto ending = fs::path(name).extension();
   if (ending == ".yaml" || ending == ".yml")
-    return with_hint(fmt::format("`{}` is a scene by its name, and bench measures skeletons and workloads", name),
-                     fmt::format("marrow render {} makes its picture, and tells the time", name));
+    return with_hint(
+        failure(fmt::format("`{}` is a scene by its name, and bench measures skeletons and workloads", name)),
+        fmt::format("marrow render {} makes its picture, and tells the time", name));
   return with_hint(
-      fmt::format("`{}` is no skeleton by its name", name),
+      failure(fmt::format("`{}` is no skeleton by its name", name)),
       fmt::format("bench takes {}, and files that end with {}", fmt::join(workload_names(), ", "), workload_endings));
 }
 

@@ -26,10 +26,9 @@ Diagnostic no_such_field(const LoadedScene& scene, const std::string& name) {
   for (const auto& field : scene.fields) fields.push_back(scene.description.objects[field.object.index()].name);
   const auto& objects = scene.description.objects;
   const bool exists = std::any_of(objects.begin(), objects.end(), [&](const auto& o) { return o.name == name; });
-  auto problem = failure(exists ? fmt::format("the object `{}` is not a field", name)
-                                : fmt::format("the scene has no object `{}`", name));
-  problem.hint = suggest(name, fields);
-  return problem;
+  return with_hint(failure(exists ? fmt::format("the object `{}` is not a field", name)
+                                  : fmt::format("the scene has no object `{}`", name)),
+                   suggest(name, fields));
 }
 
 }  // namespace

@@ -51,9 +51,7 @@ Result<Colormap> Colormap::named(std::string_view name) {
     if (m.name == name) return Colormap(m.table);
     known += (known.empty() ? "" : ", ") + std::string(m.name);
   }
-  Diagnostic d = failure("unknown colour map \"" + std::string(name) + "\"");
-  d.hint = "known colour maps: " + known;
-  return d;
+  return with_hint(failure("unknown colour map \"" + std::string(name) + "\""), "known colour maps: " + known);
 }
 
 std::vector<std::string> Colormap::names() {

@@ -59,9 +59,8 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 
 Diagnostic unknown(const std::string& what, const std::string& name, const std::vector<std::string>& known,
                    const std::string& file) {
-  Diagnostic d = failure(fmt::format("unknown {} \"{}\"", what, name), file);
-  d.hint = fmt::format("known {}s: {}", what, list(known));
-  return d;
+  return with_hint(failure(fmt::format("unknown {} \"{}\"", what, name), file),
+                   fmt::format("known {}s: {}", what, list(known)));
 }
 
 // Exact rather than fast: the shortcuts for log and pow cost more accuracy than a 16-bit file can hide.

@@ -60,9 +60,8 @@ Status check_finite(const RgbImage& image) {
   const auto bad = std::find_if(image.samples.begin(), image.samples.end(), [](float v) { return !std::isfinite(v); });
   if (bad == image.samples.end()) return Done{};
   const auto pixel = (bad - image.samples.begin()) / 3;
-  Diagnostic d = failure(fmt::format("pixel ({}, {}) is not finite", pixel % image.width, pixel / image.width));
-  d.hint = "mend it first: oiiotool in.exr --fixnan box3 -o out.exr";
-  return d;
+  return with_hint(failure(fmt::format("pixel ({}, {}) is not finite", pixel % image.width, pixel / image.width)),
+                   "mend it first: oiiotool in.exr --fixnan box3 -o out.exr");
 }
 
 Result<RgbImage> open_and_decode(const fs::path& path) {

@@ -107,9 +107,8 @@ std::optional<SceneDescription> read_all(const std::filesystem::path& path, cons
                                          Reader& reader) {
   const std::string name = path.filename().string();
   if (skeleton_format_of(name) && std::filesystem::exists(path)) {
-    Diagnostic mistaken = failure("this is a skeleton, not a scene", path.string());
-    mistaken.hint = "a scene names it by `skeleton: {file: " + name + "}`";
-    reader.problems.push_back(std::move(mistaken));
+    reader.problems.push_back(with_hint(failure("this is a skeleton, not a scene", path.string()),
+                                        "a scene names it by `skeleton: {file: " + name + "}`"));
     return std::nullopt;
   }
   TextBudget budget;
