@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "field/math/vec3.h"
@@ -36,6 +37,14 @@ struct Box3 {
     return p.x >= lower.x && p.x <= upper.x && p.y >= lower.y && p.y <= upper.y && p.z >= lower.z && p.z <= upper.z;
   }
 };
+
+/// Precondition: the box is not empty.
+inline std::array<Vec3d, 8> corners_of(const Box3& b) {
+  std::array<Vec3d, 8> corners;
+  for (std::size_t i = 0; i < 8; ++i)
+    corners[i] = {i & 1 ? b.lower.x : b.upper.x, i & 2 ? b.lower.y : b.upper.y, i & 4 ? b.lower.z : b.upper.z};
+  return corners;
+}
 
 /// Largest |coordinate| of the box: the M of the padding rule for float boxes.
 inline double largest_coordinate(const Box3& b) {

@@ -46,9 +46,7 @@ double level_of_children(const TreeNode& node, double level, std::size_t count) 
 Box3 AffineWarp::support(const Box3& child) const {
   if (child.empty()) return child;
   Box3 box;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3d c{corner & 1 ? child.lower.x : child.upper.x, corner & 2 ? child.lower.y : child.upper.y,
-                  corner & 4 ? child.lower.z : child.upper.z};
+  for (const Vec3d& c : corners_of(child)) {
     if (!is_finite(c)) return all_space;
     box.include(parent_from_child.point(c));
   }

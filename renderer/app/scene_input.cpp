@@ -14,10 +14,7 @@ namespace {
 
 Box3 placed(const Affine& world_from_local, const Box3& box) {
   Box3 world;
-  for (int corner = 0; corner < 8; ++corner)
-    world.include(
-        world_from_local.point({corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-                                corner & 4 ? box.upper.z : box.lower.z}));
+  for (const Vec3d& p : corners_of(box)) world.include(world_from_local.point(p));
   return world;
 }
 

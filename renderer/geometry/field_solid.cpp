@@ -81,10 +81,7 @@ bool FieldSolid::is_left_by(const Ray& ray) const {
 Box3 FieldSolid::to_world(const Box3& local) const {
   if (in_world_) return local;
   Box3 box;
-  for (int corner = 0; corner < 8; ++corner)
-    box.include(
-        world_from_local_.point({corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
-                                 corner & 4 ? local.upper.z : local.lower.z}));
+  for (const Vec3d& p : corners_of(local)) box.include(world_from_local_.point(p));
   return box;
 }
 

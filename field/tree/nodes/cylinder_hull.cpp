@@ -5,10 +5,8 @@ namespace marrow {
 std::optional<CylinderHull> CylinderHull::of(const Box3& box, const Vec3d& center, const UnitVec3& axis) {
   if (!is_finite(box.lower) || !is_finite(box.upper)) return {};
   CylinderHull hull{Box3::inf, -Box3::inf, 0};
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3d v = Vec3d{corner & 1 ? box.lower.x : box.upper.x, corner & 2 ? box.lower.y : box.upper.y,
-                          corner & 4 ? box.lower.z : box.upper.z} -
-                    center;
+  for (const Vec3d& p : corners_of(box)) {
+    const Vec3d v = p - center;
     const double along = dot(axis, v);
     hull.radius = std::max(hull.radius, length(v - axis * along));
     hull.top = std::max(hull.top, along);

@@ -8,11 +8,7 @@ namespace marrow {
 Box3 Shear::support(const Box3& child) const {
   if (!is_finite(child.lower) || !is_finite(child.upper)) return everywhere();
   Box3 moved;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3d p{corner & 1 ? child.lower.x : child.upper.x, corner & 2 ? child.lower.y : child.upper.y,
-                  corner & 4 ? child.lower.z : child.upper.z};
-    moved.include(p + step() * dot(p - center, axis));
-  }
+  for (const Vec3d& p : corners_of(child)) moved.include(p + step() * dot(p - center, axis));
   return moved.padded(1e-12 * (1 + std::fabs(amount)) * (largest_coordinate(child) + max_component(abs(center))));
 }
 
