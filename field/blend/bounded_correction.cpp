@@ -10,8 +10,7 @@
 namespace marrow {
 namespace {
 
-constexpr double smallest_gradient = 1e-150;  // below this G has no direction to speak of
-constexpr double smallest_field = 1e-60;      // powers of less leave the range of double
+constexpr double smallest_field = 1e-60;  // powers of less leave the range of double
 
 // +1 for Cauchy, -1 for compact: the sign of h^2 in w.
 double sign_of(const Kernel& kernel) { return kernel.family == KernelFamily::Cauchy ? 1 : -1; }
@@ -41,7 +40,7 @@ double BoundedCorrection::projected(const Place& place) const {
   return sum > 0 ? (f * sin_ + x_H * weight) / sum : x_H;
 }
 
-BoundedCorrection::Slopes BoundedCorrection::projected_slopes(double f, double G) const {
+ProjectedSlopes BoundedCorrection::projected_slopes(double f, double G) const {
   const double value = projected({f, G});
   if (projection_ == Projection::Exact || !(G < curve_.at(f))) {
     const double slope = curve_.slope(value), sum = slope * cos_ + sin_;
@@ -120,18 +119,11 @@ double BoundedCorrection::value(double f, double G) const {
 CorrectionPartials BoundedCorrection::partials(double f, double G) const {
   if (!(f > smallest_field)) return {.value = std::max(f, 0.0), .df = 1, .dG = 0, .dG_over_G = 0, .dalpha = 0};
   const auto two = behind_critical_point(f, G);
-  if (!two) {
-    const Slopes s = projected_slopes(f, G);
-    return {.value = s.value,
-            .df = s.df,
-            .dG = s.dG,
-            .dG_over_G = G > smallest_gradient ? s.dG / G : 0,
-            .dalpha = s.dalpha};
-  }
+  if (!two) return projected_slopes(f, G).partials_at(G);
   const double n = kernel_.degree, sign = sign_of(kernel_), p = exponent_of(kernel_);
   const auto& [here, D] = *two;
   const double h = D.h, D_f = D.psi * D.w / p, D_G = 2 * D.psi * h;
-  const Slopes at_D = projected_slopes(D_f, D_G);
+  const ProjectedSlopes at_D = projected_slopes(D_f, D_G);
   // along steepness(h, B; alpha) = 0
   const double by_h = -2 * n * cos_ * h - sin_ * (D.B + 3 * sign * (h * h));
   const double h_by_B = -(cos_ - sin_ * h) / by_h, h_by_alpha = (sin_ * (D.B - n * (h * h)) + cos_ * h * D.w) / by_h;

@@ -62,12 +62,9 @@ class BoundedCorrection {
   const Kernel& kernel() const { return kernel_; }
 
  private:
-  struct Slopes {
-    double value, df, dG, dalpha;
-  };
   struct TwoSkeletons;
 
-  Slopes projected_slopes(double f, double G) const;
+  ProjectedSlopes projected_slopes(double f, double G) const;
   double steepness(double h, double B) const;
   std::optional<TwoSkeletons> behind_critical_point(double f, double G) const;
 

@@ -16,9 +16,6 @@ constexpr double vanishing_cosine = 1e-15;
 // Outside this range powers of distances leave the range of double; there C = f, far from every surface.
 constexpr double smallest_field = 1e-60, largest_field = 1e100;
 
-// Below this G has no direction to speak of.
-constexpr double smallest_gradient = 1e-150;
-
 // The guard acts where sin a + s cos a falls below this share of s cos a.   [field-maths 4.4]
 constexpr double guard_share = 0.5;
 
@@ -100,7 +97,7 @@ double Correction::projected_exactly(double start, double height, double largest
   return x;
 }
 
-Correction::Slopes Correction::projected_slopes(double f, double G) const {
+ProjectedSlopes Correction::projected_slopes(double f, double G) const {
   const double value = projected(f, G);
   if (projection_ == Projection::Exact) {
     const double sum = curve_.slope(value) * cos_ + sin_;
@@ -176,20 +173,13 @@ Correction::Partials Correction::partials(double f, double G) const {
   if (const auto v = trivial(f)) return {.value = *v, .df = 1, .dG = 0, .dG_over_G = 0, .dalpha = 0};
   if (bounded_) return bounded_->partials(f, G);
   const auto two = behind_critical_point(f, G);
-  if (!two) {
-    const Slopes s = projected_slopes(f, G);
-    return {.value = s.value,
-            .df = s.df,
-            .dG = s.dG,
-            .dG_over_G = G > smallest_gradient ? s.dG / G : 0,
-            .dalpha = s.dalpha};
-  }
+  if (!two) return projected_slopes(f, G).partials_at(G);
   const int n = degree();
   const auto [r, c, a, critical] = *two;
   const double eta = critical.eta, r_D = two->critical_r();
   const double power = 1 / integer_power(r_D, n - 1);
   const double D_f = 2 * power, D_G = 2 * (n - 1) * power * (a * eta) / (r_D * r_D);
-  const Slopes at_D = projected_slopes(D_f, D_G);
+  const ProjectedSlopes at_D = projected_slopes(D_f, D_G);
   const double r_slope = (r_D * r_D + a * a * a * eta * critical.eta_slope) / (a * r_D);
   const double D_f_slope = -(n - 1) * D_f * r_slope / r_D;
   const double D_G_slope = D_G * (-(n + 1) * r_slope / r_D + 1 / a + critical.eta_slope / eta);

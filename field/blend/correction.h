@@ -46,9 +46,6 @@ class Correction {
   const std::optional<BoundedCorrection>& bounded() const { return bounded_; }
 
  private:
-  struct Slopes {
-    double value, df, dG, dalpha;
-  };
   /// The critical point D of the curve M_d of two equal skeletons 2 a apart, seen from a.   [field-maths 5]
   struct CriticalPoint {
     double eta;        ///< height / a
@@ -59,7 +56,7 @@ class Correction {
 
   // f and G inside (0, inf)
   double projected(double f, double G) const;
-  Slopes projected_slopes(double f, double G) const;
+  ProjectedSlopes projected_slopes(double f, double G) const;
   double projected_exactly(double f, double G, double x_H) const;
   std::optional<double> trivial(double f) const;
   std::optional<TwoSkeletons> behind_critical_point(double f, double G) const;

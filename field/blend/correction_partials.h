@@ -13,4 +13,14 @@ struct CorrectionPartials {
   double dalpha = 0;  ///< 0 where C = f
 };
 
+/// The same of an operator without its cavity branch, where C is smooth in f and G.
+struct ProjectedSlopes {
+  double value, df, dG, dalpha;
+
+  CorrectionPartials partials_at(double G) const {
+    constexpr double smallest_gradient = 1e-150;  // below this G has no direction to speak of
+    return {.value = value, .df = df, .dG = dG, .dG_over_G = G > smallest_gradient ? dG / G : 0, .dalpha = dalpha};
+  }
+};
+
 }  // namespace marrow
