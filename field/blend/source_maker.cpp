@@ -108,12 +108,15 @@ void SourceMaker::add(const PointSkeleton& s) {
   else emit(points, s.at, 1, s.radius, 0);
 }
 
-bool SourceMaker::add_part(const SegmentSkeleton& s, double distance) {
+// place(t) for t from 0 to 1.
+template <class Curve, class Place>
+bool SourceMaker::add_curve(const Curve& s, double half_angle, double distance, const Place& place) {
   const double size = measure(s), radius = largest_radius(s), half = 0.5 * (radius - least_radius(s));
   const double mass = unit_[1] * size;
   const int m = curves.exponent();
   const double relative = allowed(mass, radius, distance, m);
   const auto nodes = rule_nodes({.half_length = 0.5 * size,
+                                 .half_angle = half_angle,
                                  .half_lift = per_lift_ * half,
                                  .radius = radius - half,
                                  .half_radius = half,
@@ -124,34 +127,19 @@ bool SourceMaker::add_part(const SegmentSkeleton& s, double distance) {
   const Nodes rule = rule_of(*nodes);
   for (std::size_t k = 0; k < rule.positions.size(); ++k) {
     const double t = rule.positions[k];
-    emit(curves, lerp(s.from, s.to, t), size * rule.weights[k], s.radius_from + (s.radius_to - s.radius_from) * t, 1);
+    emit(curves, place(t), size * rule.weights[k], s.radius_from + (s.radius_to - s.radius_from) * t, 1);
   }
   note(mass, radius, distance, m, relative);
   return true;
 }
 
+bool SourceMaker::add_part(const SegmentSkeleton& s, double distance) {
+  return add_curve(s, 0, distance, [&](double t) { return lerp(s.from, s.to, t); });
+}
+
 bool SourceMaker::add_part(const ArcSkeleton& s, double distance) {
-  const double angle = s.end - s.begin, size = measure(s), radius = largest_radius(s);
-  const double half = 0.5 * (radius - least_radius(s)), mass = unit_[1] * size;
-  const int m = curves.exponent();
-  const double relative = allowed(mass, radius, distance, m);
-  const auto nodes = rule_nodes({.half_length = 0.5 * size,
-                                 .half_angle = 0.5 * angle,
-                                 .half_lift = per_lift_ * half,
-                                 .radius = radius - half,
-                                 .half_radius = half,
-                                 .power = degree_ - 1,
-                                 .exponent = m},
-                                distance, relative);
-  if (!nodes) return false;
-  const Nodes rule = rule_of(*nodes);
-  for (std::size_t k = 0; k < rule.positions.size(); ++k) {
-    const double t = rule.positions[k];
-    emit(curves, place_at(s, s.begin + angle * t), size * rule.weights[k],
-         s.radius_from + (s.radius_to - s.radius_from) * t, 1);
-  }
-  note(mass, radius, distance, m, relative);
-  return true;
+  const double angle = s.end - s.begin;
+  return add_curve(s, 0.5 * angle, distance, [&](double t) { return place_at(s, s.begin + angle * t); });
 }
 
 // Lines from one corner to the opposite side: at a + u (b - a) + u v (c - b) the measure is 2 area u du dv. Each of the

@@ -38,6 +38,8 @@ class SourceMaker {
   void emit(SourceSums&, const Vec3d& at, double weight, double radius, int dimension) const;
   template <class Skeleton>
   void divide(const Skeleton&, PrimitiveList<Skeleton>& rest);
+  template <class Curve, class Place>
+  bool add_curve(const Curve&, double half_angle, double distance, const Place&);
   bool add_part(const SegmentSkeleton&, double distance);
   bool add_part(const ArcSkeleton&, double distance);
   bool add_part(const TriangleSkeleton&, double distance);
