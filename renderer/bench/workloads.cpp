@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -158,6 +160,26 @@ void add_strand(Workload& w, PythonRandom& random, const Strand& s, double size)
                           five_decimals(limb[i].radius)});
 }
 
+Vec3d in_ball(PythonRandom& random, double radius) {
+  Vec3d p;
+  do
+    for (std::size_t i = 0; i < 3; ++i) p[i] = random.uniform(-radius, radius);
+  while (length(p) > radius);
+  return p;
+}
+
+// What fills a ball of radius 4.
+Workload seen_from_front(std::string name, std::string about) {
+  return {.name = std::move(name),
+          .about = std::move(about),
+          .eye = {0, 0, 20},
+          .tan_half_fov = .238,
+          .toward_light = sun(),
+          .segments = {},
+          .points = {},
+          .places = {}};
+}
+
 }  // namespace
 
 Workload creature() {
@@ -228,39 +250,22 @@ Workload hair() {
 }
 
 Workload balls() {
-  Workload w{.name = "w3",
-             .about = "200 points",
-             .eye = {0, 0, 20},
-             .tan_half_fov = .238,
-             .toward_light = sun(),
-             .segments = {},
-             .points = {},
-             .places = {}};
+  Workload w = seen_from_front("w3", "200 points");
   PythonRandom random(200);
   while (w.points.size() < 200) {
-    Vec3d p;
-    for (std::size_t i = 0; i < 3; ++i) p[i] = random.uniform(-4, 4);
-    if (length(p) < 4) w.points.push_back({five_decimals(p), five_decimals(random.uniform(.25, .6))});
+    const Vec3d p = in_ball(random, 4);
+    w.points.push_back({five_decimals(p), five_decimals(random.uniform(.25, .6))});
   }
   return w;
 }
 
 Workload strands(std::size_t count) {
-  Workload w{.name = "strands-" + std::to_string(count),
-             .about = std::to_string(count) + " segments in a ball",
-             .eye = {0, 0, 20},
-             .tan_half_fov = .238,
-             .toward_light = sun(),
-             .segments = {},
-             .points = {},
-             .places = {}};
+  Workload w = seen_from_front("strands-" + std::to_string(count), std::to_string(count) + " segments in a ball");
   PythonRandom random(static_cast<std::uint32_t>(count));
   const double size = std::sqrt(2000.0 / static_cast<double>(count));
   while (w.segments.size() < count) {
-    Vec3d root, direction;
-    do
-      for (std::size_t i = 0; i < 3; ++i) root[i] = random.uniform(-4, 4);
-    while (length(root) > 4);
+    const Vec3d root = in_ball(random, 4);
+    Vec3d direction;
     for (std::size_t i = 0; i < 3; ++i) direction[i] = random.uniform(-1, 1);
     add_strand(w, random, {root, normalize(direction), .19 * size, .15 * size, .9, random.uniform(0, 6.28)}, size);
   }
@@ -269,27 +274,15 @@ Workload strands(std::size_t count) {
 
 Workload tufts(std::size_t count) {
   constexpr std::size_t in_one = 1000;
-  Workload w{.name = "tufts-" + std::to_string(count),
-             .about = std::to_string(count) + " segments in tufts of 1000",
-             .eye = {0, 0, 20},
-             .tan_half_fov = .238,
-             .toward_light = sun(),
-             .segments = {},
-             .points = {},
-             .places = {}};
+  Workload w = seen_from_front("tufts-" + std::to_string(count), std::to_string(count) + " segments in tufts of 1000");
   PythonRandom random(static_cast<std::uint32_t>(count + 1));
   const double size = std::sqrt(2000.0 / static_cast<double>(count));
-  const auto in_ball = [&](double radius) {
-    Vec3d p;
-    do
-      for (std::size_t i = 0; i < 3; ++i) p[i] = random.uniform(-radius, radius);
-    while (length(p) > radius);
-    return p;
-  };
   while (w.segments.size() < in_one)
     add_strand(w, random,
-               {in_ball(.5 * size), normalize(in_ball(1)), .19 * size, .15 * size, .9, random.uniform(0, 6.28)}, size);
-  while (w.places.size() * in_one < count) w.places.push_back(five_decimals(in_ball(4)));
+               {in_ball(random, .5 * size), normalize(in_ball(random, 1)), .19 * size, .15 * size, .9,
+                random.uniform(0, 6.28)},
+               size);
+  while (w.places.size() * in_one < count) w.places.push_back(five_decimals(in_ball(random, 4)));
   return w;
 }
 
