@@ -15,14 +15,14 @@ namespace marrow {
 struct BlendField;
 
 struct AngleRange {
-  double least = 0, most = 0;
+  double least = 0, most = 0;  ///< radians
 };
 
 /// Of a blend whose skeletons have angles, or whose strands' directions give one; nothing where one angle holds
 /// everywhere (single_angle()).
 std::optional<AngleRange> angle_range(const BlendField&);
 
-/// The pieces of A.
+/// The pieces of A, in their order; without those of skeletons with the least angle, whose share is 0.
 std::vector<Piece> angle_pieces(const BlendField&, const AngleRange&, const std::vector<Piece>&);
 
 }  // namespace marrow

@@ -24,7 +24,7 @@ struct AngleTables {
 class AngleCurves {
  public:
   AngleCurves() = default;
-  /// 0 <= least < most; degree, cavity and projection are those of the correction.
+  /// 0 <= least < most, in radians; degree, cavity and projection are those of the correction.
   AngleCurves(const Correction&, double least, double most);
   AngleCurves(AngleCurves&&) = default;  // tables stay where they are
   AngleCurves& operator=(AngleCurves&&) = default;

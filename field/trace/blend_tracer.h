@@ -1,4 +1,4 @@
-// Certified ray tracing of one blend, in the blend's own coordinates.
+// Certified ray tracing of one blend [Zanni, Cani and Gleicher 2015], in the blend's own coordinates.
 //
 // The blend's space is divided into tiles once; a tile is divided into cells, and what a cell needs is built, when the
 // first ray enters it, and kept. All of it is a function of the place alone, so pictures do not depend on the order of

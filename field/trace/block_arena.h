@@ -10,12 +10,14 @@
 
 namespace marrow {
 
+/// Safe to use from many threads.
 class BlockArena {
  public:
-  /// 64-byte aligned; lives as long as the arena. Safe to call from many threads.
+  /// 64-byte aligned, not initialised; lives as long as the arena. Throws std::bad_alloc.
   float* allocate(std::size_t float_count);
+  /// Of its chunks, used or not.
   std::size_t bytes() const;
-  /// Of all arenas together.
+  /// Of all arenas of the process together.
   static std::size_t bytes_of_all() { return all_.load(std::memory_order_relaxed); }
   ~BlockArena() { all_ -= total_; }
   BlockArena() = default;

@@ -1,4 +1,5 @@
-// The first crossing of a surface along a piece of a ray, found with enclosures.
+// The first crossing of a surface along a piece of a ray, found with enclosures [interval Newton isolation: Moore
+// 1966].
 #pragma once
 
 #include <cstdint>

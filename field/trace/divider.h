@@ -17,6 +17,7 @@ namespace marrow {
 /// takes 1.4 times as long (10^6 segments of neurons).
 inline constexpr double largest_coarse_group = 0.5;
 
+/// Of one of the eight half-sized cubes in a cube; `octant` has a bit for each axis, x the lowest.
 Vec3d octant_center(const Vec3d& center, double half, int octant);
 
 /// A cube and the sources as it sees them.
@@ -26,7 +27,7 @@ struct CubeView {
   KeptSurroundings sources;
 };
 
-/// Immutable; works with a coarse split, whose errors enter the bounds.
+/// Immutable; works with a coarse split, whose errors enter the bounds (tracing.md 3.1, 3.3).
 class Divider {
  public:
   Divider(const SourceTree&, const NearFar& coarse, const IsoCurve&, const BlockKernels&, int degree);

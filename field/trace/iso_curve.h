@@ -16,13 +16,14 @@ class IsoCurve {
  public:
   using View = IsoTable::View;
 
-  /// For one angle.
+  /// For one angle, in radians.
   IsoCurve(const Correction&, double alpha);
   /// Of a range of angles: what gives the angle of a place.
   enum class Range { Skeletons, Directions };
-  /// For all angles from `least` to `most`, 0 <= least < most, with the degree, cavity and projection of a correction.
-  /// Where skeletons have angles: tables for angles at equal distances, cubic between them. What that is off is found
-  /// half way between tables, and V_lower lies below V by twice as much. Where directions give them: for both ends.
+  /// For all angles from `least` to `most`, 0 <= least < most, in radians, with the degree, cavity and projection of a
+  /// correction. Where skeletons have angles: tables for angles at equal distances, cubic between them. What that is
+  /// off is found half way between tables, and V_lower lies below V by twice as much. Where directions give them: for
+  /// both ends.
   IsoCurve(const Correction&, double least, double most, Range = Range::Skeletons);
 
   IsoCurve(IsoCurve&&) = default;  // views stay where they are

@@ -1,8 +1,8 @@
 // The curve on which the corrected field of one angle is 1, as a table: "outside?" without evaluating the operator.
 //
-// In the plane of x = f and y = |grad_S f| the operator C is isotone in both for alpha >= 0 (tracing.md 3.3),
-// so {C < 1} is a region below one curve. It is stored in coordinates turned by theta = alpha, or a little more where
-// alpha is near 0 or below it,
+// C is the operator of blend/correction.h [Zanni et al. 2015; field-maths 4, 5]. In the plane of x = f and
+// y = |grad_S f| it is isotone in both for alpha >= 0 (tracing.md 3.3), so {C < 1} is a region below one curve. It is
+// stored in coordinates turned by theta = alpha, or a little more where alpha is near 0 or below it,
 //   u = y sin theta - x cos theta,   v = x sin theta + y cos theta,
 // because the operator projects along lines of constant v: C(x, y) < 1  <=>  v < V(u), with V nearly constant.
 // For alpha < 0 C is isotone in y and first falls, then rises in x: the curve over x first rises, then falls, so that
@@ -21,6 +21,7 @@ class IsoTable {
   /// not bounded (G = 0 without cavity). Where the curve comes to the border of the cavity branch it has a kink, and
   /// steps are so much shorter that an entry stands there: a line across it would be off by up to 2e-4, and C by up to
   /// 4e-5.
+  /// `alpha` in radians, here and below.
   IsoTable(const Correction&, double alpha);
   /// One of a range of angles, turned as smoothly as the angle changes: at least `entry_count` entries.
   IsoTable(const Correction&, double alpha, int entry_count);

@@ -13,10 +13,12 @@ namespace marrow {
 /// Room for so many floats, 64-byte aligned.
 using Allocate = std::function<float*(std::size_t)>;
 
+/// That write_sources() takes.
 inline std::size_t source_floats(const SourceGroups& curves, const SourceGroups& points) {
   return static_cast<std::size_t>((curves.group_count() + points.group_count()) * floats_per_group);
 }
 
+/// In the coordinates of its block.
 struct Level {
   SourceGroups curves, points;
   LevelPolynomials far;

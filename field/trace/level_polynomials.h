@@ -23,7 +23,7 @@ struct Economy {
   double f = 0, gradient = 0;
 };
 
-/// Chebyshev's economy: what is left out of x^a y^b z^c is not the monomial but the largest multiple of
+/// Chebyshev's economy [Lanczos 1956]: what is left out of x^a y^b z^c is not the monomial but the largest multiple of
 /// T_a(x) T_b(y) T_c(z) in it, 2^(1-a) 2^(1-b) 2^(1-c) (1 for an exponent of 0), which is at most as large as that in
 /// the cube; the rest is of lower degrees. So polynomials of degree 5 are nearly as good as those of degree 8 that they
 /// come from, at a third of the cost. What is left out counts as an error. Of the evaluated degrees up to `most` the

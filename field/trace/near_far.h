@@ -104,7 +104,7 @@ class NearFar {
 Surroundings refined(const NearFar&, const SourceTree&, const KeptSurroundings* parent, int octant, const Vec3d& center,
                      double half, double keep);
 
-/// Emits the quadrature nodes of a piece in the coordinates of a cube.
+/// Emits the nodes of the rule with `count` of them, 1 to max_gauss_nodes, or a point, in the coordinates of a cube.
 void add_nodes(const Piece&, int count, const Vec3d& center, double half, int degree, SourceGroups& out);
 
 }  // namespace marrow

@@ -8,7 +8,7 @@ namespace marrow {
 /// The share of the range of angles in a part of a block, where directions give it: a polynomial in (x - center) /
 /// half, its coefficients in the order of far_field.h. It is the share that is traced; see share_patches.h.
 struct alignas(64) SharePatch {
-  static constexpr int degree = 4, coefficients = 35;
+  static constexpr int degree = 4, coefficients = 35;  ///< binom(degree + 3, 3)
   float center[3] = {0, 0, 0}, inverse_half = 1;
   float error = 0;  ///< what it may be off from the exact share: an estimate
   float bend = 0;   ///< half of its second derivative along any line is at most this

@@ -17,6 +17,7 @@ static_assert(sizeof(SourceGroup) == floats_per_group * sizeof(float));
 
 class SourceGroups {
  public:
+  /// A source of this radius, all in one system of coordinates: those of the block.
   void add(const Vec3d& at, double share, double radius) {
     const int lane = count_ % lanes;
     if (lane == 0) start_group();

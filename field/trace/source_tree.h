@@ -1,4 +1,4 @@
-// Pieces in a hierarchy of groups, each with the moments that let it stand for its pieces from afar.
+// Pieces in a hierarchy of groups, each with the moments that let it stand for its pieces from afar (tracing.md 3.2).
 #pragma once
 
 #include <cstdint>
@@ -41,7 +41,7 @@ class SourceRef {
   std::uint32_t bits_;
 };
 
-/// Immutable. Fewer than 2^31 pieces.
+/// Immutable, safe to use from many threads. Fewer than 2^31 pieces.
 class SourceTree {
  public:
   /// Halves the pieces at the median of their longest extent; the same tree on any number of threads.

@@ -12,10 +12,10 @@ namespace marrow {
 /// x[48] y[48] z[48], the last three 0; 64-byte aligned.
 const float* strand_axes();
 
-/// The weights of a tensor.
+/// The weights of a tensor of tensor_components numbers: tensor_floats of them, 0 behind the last axis.
 void weights_of_tensor(const float* tensor, float* weights);
 
-/// sum f_i f_j (u_i . u_j)^8 over all i and j of a tensor sum f_i u_i^8.
+/// sum f_i f_j (u_i . u_j)^8 over all i and j of a tensor sum f_i u_i^8 of tensor_components numbers.
 double contracted_with_itself(const float* tensor);
 
 }  // namespace marrow

@@ -13,10 +13,11 @@ namespace marrow {
 struct StrandedLevel {
   SourceGroups curves, points;
   CellStrands seen;
-  std::vector<int> groups;        // of each strand of `seen`
-  std::vector<float> directions;  // as StrandLevel::directions
+  std::vector<int> groups;        ///< of each strand of `seen`
+  std::vector<float> directions;  ///< as StrandLevel::directions
 };
 
+/// Precondition: the context has strands.
 StrandedLevel make_stranded_level(const Block::Context&, const CellTree::Cell&);
 
 /// Without far polynomials: of its level kernels find shares alone.

@@ -26,7 +26,7 @@ struct TurnedLine {
 /// V(u) from where the curve meets the axis G = 0 on.
 class TurnedCurve {
  public:
-  /// Turned by `turn`, 0 to pi/2. The correction must outlive the curve; its critical field must be finite.
+  /// Turned by `turn`, 0 to pi/2 radians. The correction must outlive the curve; its critical field must be finite.
   TurnedCurve(const Correction&, double critical_field, double turn);
 
   double sine() const { return sin_; }
