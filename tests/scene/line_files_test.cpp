@@ -44,17 +44,30 @@ TEST(ObjLines, MayUseVerticesThatComeLater) {
 TEST(ObjLines, SayWhatIsWrongAndWhere) {
   expect_file_error(obj, "", 0, 0, "no lines");
   expect_file_error(obj, "v 0 0 0\nf 1 1 1\n", 0, 0, "no lines");
-  expect_file_error(obj, "v 0 zero 0\n", 1, 5, "`zero` is not a finite number");
-  expect_file_error(obj, "v 0 0\n", 1, 1, "2 numbers");
-  expect_file_error(obj, "v 0 0 0\nv nan 0 0\nl 1 2\n", 2, 3, "finite");
-  expect_file_error(obj, "v 0 0 0\nv 1 0 0\n\n l 1 3\n", 4, 1, "no vertex 3", thick);
-  expect_file_error(obj, "v 0 0 0\nl 1 -2\n", 2, 5, "no vertex -2");
-  expect_file_error(obj, "v 0 0 0\nl 0 1\n", 2, 3, "`0` is not the number of a vertex");
-  expect_file_error(obj, "v 0 0 0\nl 1\n", 2, 1, "two vertices");
-  expect_file_error(obj, "v 0 0 0\nv 1 0 0\nl 1 2\n", 3, 1, "vertex 1 has no radius");
-  expect_file_error(obj, "v 0 0 0 1 0.5 0.5\nv 1 0 0 1 1 1\nl 1 2\n", 3, 1, "no radius");  // a colour is no radius
-  expect_file_error(obj, "v 0 0 0 -1\nv 1 0 0 1\nl 1 2\n", 3, 1, "negative");
-  expect_file_error(obj, "v 0 0 0 1\nv 1e16 0 0 1\nl 1 2\n", 3, 1, "beyond");
+  expect_file_error(obj, "v 0 zero 0\np 1\n", 1, 5, "`zero` is not a finite number");
+  expect_file_error(obj, "v 0 0\np 1\n", 1, 6, "2 numbers");
+  expect_file_error(obj, "v 0 0 0\nv nan 0 0\nl 1 2\n", 2, 3, "finite", thick);
+  expect_file_error(obj, "v 0 0 0\nv 1 0 0\n\n l 1 3\n", 4, 6, "no vertex 3", thick);
+  expect_file_error(obj, "v 0 0 0\nv 1 0 0\nl 1 \\\n 2 3 # far\n", 4, 4, "no vertex 3", thick);
+  expect_file_error(obj, "v 0 0 0\nl 1 -2\n", 2, 5, "no vertex -2", thick);
+  expect_file_error(obj, "v 0 0 0\nl 0 1\n", 2, 3, "`0` is not the number of a vertex", thick);
+  expect_file_error(obj, "v 0 0 0\nl 1\n", 2, 1, "two vertices", thick);
+  expect_file_error(obj, "v 0 0 0\nv 1 0 0\nl 1 2\n", 1, 3, "vertex 1 has no radius");
+  expect_file_error(obj, "v 0 0 0 1 0.5 0.5\nv 1 0 0 1 1 1\nl 1 2\n", 1, 3, "no radius");  // a colour is no radius
+  expect_file_error(obj, "v 0 0 0 -1\nv 1 0 0 1\nl 1 2\n", 1, 9, "negative");
+  expect_file_error(obj, "v 0 0 0 1\nv 1e16 0 0 1\nl 1 2\n", 2, 3, "`1e16` lies beyond");
+}
+
+TEST(ObjLines, TellAllMistakesOfAFileInTheOrderOfItsLines) {
+  EXPECT_EQ(places_of_mistakes(obj,
+                               "v 0 0 0 -1\n"
+                               "v nan 0 x 1\n"
+                               "v 1 0 0\n"  // no radius
+                               "v 0 1 0\n"  // nor here: told once
+                               "l 1 2 -9 zero 7\n"
+                               "l 3 4\n"
+                               "l 1\n"),
+            (std::vector<std::string>{"1:9", "2:3", "2:9", "3:3", "5:7", "5:10", "5:15", "7:1"}));
 }
 
 TEST(Csv, FindsItsColumnsAndSeparator) {
@@ -92,16 +105,31 @@ TEST(Csv, SaysWhatIsWrongAndWhere) {
   expect_file_error(csv, "1,2,3\n", 1, 1, "names no column `x`", thick);
   expect_file_error(csv, "x,y,z\n1,2,3\n", 1, 1, "no column for the radius");
   expect_file_error(csv, "x,y,z\n1,2,3\n1,two,3\n", 3, 3, "`two` is not a finite number", thick);
-  expect_file_error(csv, "x,y,z\n1,2\n", 2, 1, "2 fields", thick);
+  expect_file_error(csv, "x,y,z\n1,2\n", 2, 4, "2 fields", thick);
   expect_file_error(csv, "x,y,z\n1,\"2,3\n", 2, 3, "quote", thick);
-  expect_file_error(csv, "x,y,z,id,parent\n1,2,3,1,9\n", 2, 1, "no node 9", thick);
+  expect_file_error(csv, "x,y,z,id,parent\n1,2,3,1,9\n", 2, 9, "no node 9", thick);
   expect_file_error(csv, "x,y,z,id,parent\n1,2,3,1.5,0\n", 2, 7, "not a whole number", thick);
-  expect_file_error(csv, "x,y,z,id,parent\n1,2,3,1,2\n1,2,3,2,1\n", 2, 1, "own ancestor", thick);
+  expect_file_error(csv, "x,y,z,id,parent\n1,2,3,1,2\n1,2,3,2,1\n", 2, 9, "own ancestor", thick);
+  expect_file_error(csv, "radius,x,y,z\n-0.5,1,2,3\n", 2, 1, "the radius -0.5 is negative");
+  expect_file_error(csv, "radius,x,y,z\n1,1,2e15,3\n", 2, 5, "`2e15` lies beyond");
   expect_file_error(csv, "1,2,3\n", 1, 1, "no column 9", {.radius = 1.0, .columns = {.x = 9, .y = 2, .z = 3}});
   expect_file_error(csv, "a,y,z\n", 1, 1, "no column `b`", {.radius = 1.0, .columns = {.x = "b"}});
   std::string many = "x,y,z\n";
   for (int i = 0; i < 1000; ++i) many += "?\n";
   EXPECT_EQ(read_skeleton(csv, many, thick, "t").why().size(), 20u);
+}
+
+TEST(Csv, TellsAllMistakesOfATableInTheOrderOfItsRows) {
+  EXPECT_EQ(places_of_mistakes(csv,
+                               "id,x,y,z,radius,parent\n"
+                               "1,0,0,0,1,0\n"
+                               "2,0,0,0,1,77\n"
+                               "3,0,two,?,1,2\n"
+                               "4,0,0,0,-1,3\n"  // its parent has mistakes, and is there
+                               "5,0\n"
+                               "5.5,0,0,0,1,5\n"
+                               "1,0,0,0,1,1\n"),
+            (std::vector<std::string>{"3:11", "4:5", "4:9", "5:9", "6:4", "7:1", "8:1"}));
 }
 
 struct HairText {

@@ -62,7 +62,10 @@ TEST(Xyz, SaysWhatIsWrongAndWhere) {
   expect_file_error(xyz, "1e99\n\n", 1, 1, "not a number of atoms");
   expect_file_error(xyz, "2\n\nC 0 0 0\n", 0, 0, "2 atoms, but the file has 1");
   expect_file_error(xyz, "1\n\nQq 0 0 0\n", 3, 1, "`Qq` is no chemical element");
-  expect_file_error(xyz, "1\n\nC 0 0\n", 3, 1, "3 columns");
+  expect_file_error(xyz, "1\n\nC 0 0\n", 3, 6, "3 columns");
+  expect_file_error(xyz, "1\n\nC 0 1e16 0\n", 3, 5, "`1e16` lies beyond");
+  EXPECT_EQ(places_of_mistakes(xyz, "4\n\nQq x 0 y\nC 0 0 0\nC 0 0\n"),
+            (std::vector<std::string>{"0:0", "3:1", "3:4", "3:8", "5:6"}));
   expect_file_error(xyz, "1\n\nC 0 inf 0\n", 3, 5, "`inf` is not a finite number");
   expect_file_error(xyz, "1\n\nOg 0 0 0\n", 0, 0, "no van der Waals radius of Og");
   expect_file_error(xyz, "1\n\nC 0 0 0\n", 0, 0, "no atom of the chosen", {.elements = {"O"}});
@@ -163,10 +166,10 @@ TEST(Pdb, JoinsWhatConectNames) {
 
 TEST(Pdb, SaysWhatIsWrongAndWhere) {
   expect_file_error(pdb, "", 0, 0, "no atoms");
-  expect_file_error(pdb, "ATOM      1  CA  RES A   1       0.000   0.000\n", 1, 1, "ends before");
+  expect_file_error(pdb, "ATOM      1  CA  RES A   1       0.000   0.000\n", 1, 47, "ends before");
   std::string text = atom("ATOM", 1, " CA ", ' ', 1, 0, " C");
   text.replace(38, 8, "   x.000");
-  expect_file_error(pdb, "REMARK\n" + text, 2, 39, "`x.000` is not a finite number");
+  expect_file_error(pdb, "REMARK\n" + text, 2, 42, "`x.000` is not a finite number");
   expect_file_error(pdb, atom("ATOM", 1, " ?? ", ' ', 1, 0, "  "), 1, 13, "no known element");
 }
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -21,6 +22,17 @@ inline void expect_file_error(SkeletonFormat format, std::string_view text, int 
   EXPECT_EQ(first.where.column, column) << text << '\n' << first.message;
   EXPECT_NE(first.message.find(message), std::string::npos) << first.message;
   for (const Diagnostic& d : file.why()) EXPECT_FALSE(d.message.empty());
+}
+
+/// Where each mistake of a text stands, such as "3:14".
+inline std::vector<std::string> places_of_mistakes(SkeletonFormat format, std::string_view text,
+                                                   const SkeletonOptions& options = {}) {
+  std::vector<std::string> places;
+  const auto file = read_skeleton(format, text, options, "t");
+  if (file) return places;
+  for (const Diagnostic& d : file.why())
+    places.push_back(std::to_string(d.where.line) + ':' + std::to_string(d.where.column));
+  return places;
 }
 
 /// Reads a text that must be right; ends the test otherwise.

@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include <gtest/gtest.h>
+#include "tests/scene/skeleton_file_text.h"
 
 namespace marrow {
 namespace {
@@ -15,11 +15,18 @@ Result<SkeletonFile> read(std::string_view text, SkeletonOptions options = {}) {
   return read_swc(text, options, "t.swc");
 }
 
-void expect_error(std::string_view text, int line, std::string_view message) {
+void expect_error(std::string_view text, int line, int column, std::string_view message) {
+  expect_file_error(SkeletonFormat::Swc, text, line, column, message);
+}
+
+// Place and first word of each, such as "3:6 there".
+std::vector<std::string> mistakes_of(std::string_view text) {
+  std::vector<std::string> found;
   const auto swc = read(text);
-  ASSERT_FALSE(swc) << text;
-  EXPECT_EQ(swc.why()[0].where.line, line) << text;
-  EXPECT_NE(swc.why()[0].message.find(message), std::string::npos) << swc.why()[0].message;
+  if (swc) return found;
+  for (const Diagnostic& d : swc.why())
+    found.push_back(std::to_string(d.where.line) + ':' + std::to_string(d.where.column) + ' ' + d.message);
+  return found;
 }
 
 TEST(Swc, TakesFilesAsTheyAre) {
@@ -54,19 +61,46 @@ TEST(Swc, UnknownRadiiGetTheSmallestOneAndAWarning) {
 }
 
 TEST(Swc, SaysWhatIsWrongAndWhere) {
-  expect_error("", 0, "no nodes");
-  expect_error("1 1 0 0 0 1\n", 1, "6 columns");
-  expect_error("1 1 0 nan 0 1 -1\n", 1, "not a finite number");
-  expect_error("1 1 0 1e999 0 1 -1\n", 1, "not a finite number");
-  expect_error("1 1 0 1e16 0 1 -1\n", 1, "beyond");
-  expect_error("1.5 1 0 0 0 1 -1\n", 1, "id is not a whole number");
-  expect_error("1e300 1 0 0 0 1 -1\n", 1, "id is not a whole number");
-  expect_error("1 1 0 0 0 -1 -1\n", 1, "negative");
-  expect_error("1 1 0 0 0 1 -1\n2 1 0 0 0 1 9\n", 2, "no node 9");
-  expect_error("1 1 0 0 0 1 -1\n1 1 0 0 0 1 -1\n", 2, "given twice");
-  expect_error("1 1 0 0 0 1 1\n", 1, "its own parent");
-  expect_error("1 1 0 0 0 1 3\n2 1 0 0 0 1 1\n3 1 0 0 0 1 2\n", 1, "its own ancestor");
-  expect_error("1 1 0 0 0 0 -1\n", 0, "every radius");
+  expect_error("", 0, 0, "no nodes");
+  expect_error("1 1 0 0 0 1\n", 1, 12, "ends after 6 columns");
+  expect_error("id type x y z r parent\n1 1 0 0 0 1 -1\n", 1, 1, "`id` is not a finite number");
+  expect_error("1 1 0 nan 0 1 -1\n", 1, 7, "`nan` is not a finite number");
+  expect_error("1 1 0 1e999 0 1 -1\n", 1, 7, "not a finite number");
+  expect_error("1 1 0 -1e16 0 1 -1\n", 1, 7, "`-1e16` lies beyond");
+  expect_error("1 1 0 0 0 1e16 -1\n", 1, 11, "`1e16` lies beyond");
+  expect_error("1.5 1 0 0 0 1 -1\n", 1, 1, "id `1.5` is not a whole number");
+  expect_error("1e300 1 0 0 0 1 -1\n", 1, 1, "id `1e300` is not a whole number");
+  expect_error("1 0.5 0 0 0 1 -1\n", 1, 3, "type `0.5` is not a whole number");
+  expect_error("1 1 0 0 0 -1 -1\n", 1, 11, "the radius -1 is negative");
+  expect_error("1 1 0 0 0 1 -1\n2 1 0 0 0 1 9\n", 2, 13, "no node 9");
+  expect_error("1 1 0 0 0 1 -1\n 1 1 0 0 0 1 -1\n", 2, 2, "given twice");
+  expect_error("1 1 0 0 0 1 1\n", 1, 13, "its own parent");
+  expect_error("1 1 0 0 0 1 3\n2 1 0 0 0 1 1\n3 1 0 0 0 1 2\n", 1, 13, "its own ancestor");
+  expect_error("1 1 0 0 0 0 -1\n", 0, 0, "every radius");
+}
+
+TEST(Swc, TellsAllMistakesOfAFileInTheOrderOfItsLines) {
+  EXPECT_EQ(mistakes_of("1 1 0 0 0 1 -1\n"
+                        "2 1 0 0 0 1 9\n"  // no such parent
+                        "3 1 nan 0 inf -2 2\n"
+                        "4 1 0 0 0 -3 3\n"  // its parent has mistakes, and is there
+                        "4 1 0 0 0 1 4\n"   // an id again; its parent is the first of them
+                        "6 1 0 0\n"
+                        "7 1 0 0 0 1 6.5\n"
+                        "8 1 0 0 0 1 8\n"),
+            (std::vector<std::string>{
+                "2:13 there is no node 9, the parent of node 2", "3:5 `nan` is not a finite number",
+                "3:11 `inf` is not a finite number", "3:15 the radius -2 is negative", "4:11 the radius -3 is negative",
+                "5:1 the id 4 is given twice", "6:8 the line ends after 4 columns, it needs 7",
+                "7:13 the parent `6.5` is not a whole number", "8:13 the node 8 is its own parent"}));
+}
+
+TEST(Swc, UnderlinesWhatIsWrong) {
+  const std::string text = "1 1 0 12.5e99 0 1 -1\n";
+  const auto swc = read(text);
+  ASSERT_FALSE(swc);
+  EXPECT_NE(render(swc.why()[0], text).find("      |       ^~~~~~~\n"), std::string::npos)
+      << render(swc.why()[0], text);
 }
 
 TEST(Swc, StopsAfterTwentyMistakes) {

@@ -46,9 +46,10 @@ class CsvReader {
       while (!problems_.is_full() && rows_.next(row)) add(row);
       if (list_.size() == 0 && problems_.none()) problems_.complain_of_file("the table has a header, but no rows");
     }
-    if (problems_.none() && has(Parent)) link();
+    const bool are_rows_good = problems_.none();
+    if (!problems_.is_full() && has(Parent)) link();
     SkeletonFile made;
-    if (problems_.none()) made = std::move(list_).finish();
+    if (are_rows_good) made = std::move(list_).finish();
     if (!problems_.none()) return problems_.take();
     return made;
   }
@@ -73,8 +74,8 @@ class CsvReader {
     if (const int* number = std::get_if<int>(&wanted)) {
       places_[column] = static_cast<std::size_t>(*number - 1);
       if (places_[column] >= first.size())
-        problems_.complain(first[0].place,
-                           fmt::format("there is no column {}: the first row has {}", *number, first.size()));
+        problems_.complain_of_line(first[0].place,
+                                   fmt::format("there is no column {}: the first row has {}", *number, first.size()));
       return;
     }
     const std::string& name = std::get<std::string>(wanted);
@@ -83,8 +84,8 @@ class CsvReader {
       if (first[i].text == name) return void(places_[column] = i);
       if (known.size() < 100) known.emplace_back(first[i].text.substr(0, 40));
     }
-    problems_.complain(first[0].place, fmt::format("the header has no column {}", quoted_word(name)),
-                       suggest(name, known));
+    problems_.complain_of_line(first[0].place, fmt::format("the header has no column {}", quoted_word(name)),
+                               suggest(name, known));
   }
 
   void find_usual(Column column, const std::vector<TableField>& first) {
@@ -97,15 +98,15 @@ class CsvReader {
     const char* const hint = "say which they are, by name or by number: columns: {x: 1, y: 2, z: 3, radius: 4}";
     for (const Column c : {X, Y, Z})
       if (!has(c))
-        return problems_.complain(first[0].place, fmt::format("the header names no column `{}`", column_names[c]),
-                                  hint);
+        return problems_.complain_of_line(first[0].place,
+                                          fmt::format("the header names no column `{}`", column_names[c]), hint);
     if (!has(Radius) && !options_.radius)
-      return problems_.complain(first[0].place, "the table has no column for the radius",
-                                "give the skeleton a `radius`, or `columns: {radius: ...}`");
+      return problems_.complain_of_line(first[0].place, "the table has no column for the radius",
+                                        "give the skeleton a `radius`, or `columns: {radius: ...}`");
     if (has(Strand) && has(Parent)) choose_joining();
     if (has(Strand) && has(Parent))
-      return problems_.complain(first[0].place, "the rows are joined both by strands and by parents",
-                                "choose one of the columns");
+      return problems_.complain_of_line(first[0].place, "the rows are joined both by strands and by parents",
+                                        "choose one of the columns");
     has_header_ = !are_all_counted || !rows_.number(first[places_[X]].text);
     for (const std::size_t place : places_)
       if (place != absent) width_ = std::max(width_, place + 1);
@@ -127,17 +128,17 @@ class CsvReader {
   }
 
   void add(const std::vector<TableField>& row) {
+    if (has(Parent)) add_name(row);
     if (row.size() < width_)
-      return problems_.complain(row[0].place,
+      return problems_.complain(row.back().text.data() + row.back().text.size(),
                                 fmt::format("the row has {} fields, column {} is needed", row.size(), width_));
     const auto x = number(row, X), y = number(row, Y), z = number(row, Z);
     const auto radius = options_.radius ? options_.radius : number(row, Radius);
-    if (!x || !y || !z || !radius) return;
-    const std::int32_t index = list_.next_index();
     std::int32_t parent = -1;
-    if (has(Strand)) parent = std::exchange(last_of(row[places_[Strand]].text), index);
-    if (has(Parent)) add_name(row);
-    list_.add({*x, *y, *z}, *radius, parent, row[0].place);
+    if (has(Strand)) parent = std::exchange(last_of(row[places_[Strand]].text), list_.next_index());
+    const auto place = [&](Column column) { return row[places_[column]].place; };
+    list_.add({x.value_or(0), y.value_or(0), z.value_or(0)}, radius.value_or(0), parent,
+              NodePlaces{{place(X), place(Y), place(Z)}, options_.radius ? nullptr : place(Radius)});
   }
 
   // The last node of a strand so far, or -1. Rows of one strand nearly always follow each other.
@@ -147,19 +148,28 @@ class CsvReader {
     return *last_;
   }
 
+  std::optional<std::int64_t> whole(const std::vector<TableField>& row, Column column) {
+    const auto value = number(row, column);
+    const auto id = value ? whole_number(*value) : std::nullopt;
+    if (value && !id)
+      problems_.complain(row[places_[column]].place,
+                         fmt::format("{} is not a whole number", quoted_word(row[places_[column]].text)));
+    return id;
+  }
+
+  // A row with mistakes keeps its name, so that what refers to it is not a second mistake.
   void add_name(const std::vector<TableField>& row) {
-    const auto whole = [&](Column column) -> std::int64_t {
-      const auto value = number(row, column);
-      const auto id = value ? whole_number(*value) : std::nullopt;
-      if (value && !id)
-        problems_.complain(row[places_[column]].place,
-                           fmt::format("{} is not a whole number", quoted_word(row[places_[column]].text)));
-      return id.value_or(0);
-    };
-    const std::int64_t id = has(Id) ? whole(Id) : static_cast<std::int64_t>(named_.size()) + 1;
-    const bool is_root = row[places_[Parent]].text.empty();
-    has_id_0_ = has_id_0_ || id == 0;
-    named_.push_back({id, is_root ? NamedNode::no_parent : whole(Parent), row[0].place});
+    ++rows_so_far_;
+    const auto reaches = [&](Column column) { return places_[column] < row.size(); };
+    if (has(Id) && !reaches(Id)) return;
+    const auto id = has(Id) ? whole(row, Id) : std::optional(rows_so_far_);
+    const bool is_root = !reaches(Parent) || row[places_[Parent]].text.empty();
+    const auto parent = is_root ? std::nullopt : whole(row, Parent);
+    if (!id) return;
+    has_id_0_ = has_id_0_ || *id == 0;
+    const char* const start = row[0].place;
+    named_.push_back({*id, parent.value_or(NamedNode::no_parent), has(Id) ? row[places_[Id]].place : start,
+                      is_root ? start : row[places_[Parent]].place});
   }
 
   void link() {
@@ -177,6 +187,7 @@ class CsvReader {
   std::array<std::size_t, Columns> places_{};
   std::size_t width_ = 0;
   bool has_header_ = true, has_id_0_ = false;
+  std::int64_t rows_so_far_ = 0;
   std::unordered_map<std::string_view, std::int32_t> last_of_strand_;
   std::string_view last_strand_;
   std::int32_t* last_ = nullptr;

@@ -111,7 +111,7 @@ class HairReader {
     if (!is_finite(position) || !std::isfinite(radius) || radius < 0)
       return problems_.complain_of_file(
           fmt::format("point {} of strand {} is not finite, or thinner than nothing (byte {})", point, strand, at));
-    list_.add(position, radius, has_parent ? list_.next_index() - 1 : -1, nullptr);
+    list_.add(position, radius, has_parent ? list_.next_index() - 1 : -1);
   }
 
   std::size_t size_;

@@ -31,14 +31,14 @@ void add_atoms(const Molecule& molecule, const Wanted& wanted, const SkeletonOpt
     if (element.van_der_waals == 0 && !options.radius)
       return problems.complain_of_file(fmt::format("no van der Waals radius of {} is known", element.symbol),
                                        "give the skeleton a `radius`");
-    list.add(atom.at, element.van_der_waals, -1, nullptr);
+    list.add(atom.at, element.van_der_waals, -1);
     if (problems.is_full()) return;
   }
 }
 
 void add_stick(const Vec3d& from, const Vec3d& to, double radius, NodeList& list) {
-  list.add_in_scene_units(from, radius, -1, nullptr);
-  list.add_in_scene_units(to, radius, list.next_index() - 1, nullptr);
+  list.add_in_scene_units(from, radius, -1);
+  list.add_in_scene_units(to, radius, list.next_index() - 1);
 }
 
 // Halves are drawn only where colours change: the field of two halves is that of the whole.

@@ -10,6 +10,16 @@
 
 namespace marrow {
 
+namespace {
+constexpr double largest = 1e15;  // as every number of a scene
+constexpr const char* hint_of_largest = "nothing in a scene may be larger than 1e15";
+}  // namespace
+
+void refuse_beyond(double in_scene_units, const char* place, FileProblems& problems) {
+  if (std::fabs(in_scene_units) <= largest) return;
+  problems.complain(place, quoted_word(problems.word_at(place)) + " lies beyond 1e15 scene units", hint_of_largest);
+}
+
 void NodeList::reserve(std::size_t nodes) {
   nodes = std::min(nodes, max_nodes);
   graph_.positions.reserve(nodes);
@@ -17,31 +27,37 @@ void NodeList::reserve(std::size_t nodes) {
   graph_.parents.reserve(nodes);
 }
 
-void NodeList::check_last(const char* place) {
-  constexpr double largest = 1e15;  // as every coordinate of a scene
-  if (!(max_component(abs(graph_.positions.back())) <= largest && graph_.radii.back() <= largest))
-    problems_.complain(place, "the node lies beyond 1e15 scene units");
-  if (size() > max_nodes) problems_.give_up(place, fmt::format("the file has more than {} nodes", max_nodes));
+void NodeList::check_last(const NodePlaces& places) {
+  const Vec3d& p = graph_.positions.back();
+  const double radius = graph_.radii.back();
+  if (places.at[0] != nullptr) {
+    for (std::size_t axis = 0; axis < 3; ++axis) refuse_beyond(p[axis], places.at[axis], problems_);
+    if (!options_.radius) refuse_beyond(radius, places.radius, problems_);
+  } else if (!(max_component(abs(p)) <= largest && radius <= largest)) {
+    problems_.complain_of_file(fmt::format("node {} lies beyond 1e15 scene units", size()), hint_of_largest);
+  }
+  if (size() > max_nodes) problems_.give_up(places.at[0], fmt::format("the file has more than {} nodes", max_nodes));
 }
 
-void NodeList::add(const Vec3d& at, double radius, const char* place) {
-  if (radius < 0) return problems_.complain(place, "the radius is negative");
+void NodeList::add(const Vec3d& at, double radius, const NodePlaces& places) {
+  if (radius < 0)
+    problems_.complain(places.radius, fmt::format("the radius {} is negative", radius),
+                       "a radius is above 0, or 0 where it is not known");
   graph_.positions.push_back(at * options_.scale);
   graph_.radii.push_back(options_.radius.value_or(radius * options_.scale * options_.radius_scale));
-  check_last(place);
+  check_last(places);
 }
 
-void NodeList::add(const Vec3d& at, double radius, std::int32_t parent, const char* place) {
-  const std::size_t before = size();
-  add(at, radius, place);
-  if (size() > before) graph_.parents.push_back(parent);
+void NodeList::add(const Vec3d& at, double radius, std::int32_t parent, const NodePlaces& places) {
+  add(at, radius, places);
+  graph_.parents.push_back(parent);
 }
 
-void NodeList::add_in_scene_units(const Vec3d& at_in_file, double radius, std::int32_t parent, const char* place) {
+void NodeList::add_in_scene_units(const Vec3d& at_in_file, double radius, std::int32_t parent) {
   graph_.positions.push_back(at_in_file * options_.scale);
   graph_.radii.push_back(radius);
   graph_.parents.push_back(parent);
-  check_last(place);
+  check_last({});
 }
 
 SkeletonFile NodeList::finish() && {

@@ -69,15 +69,16 @@ class PdbReader {
     Atom atom{};
     double* const coordinates[] = {&atom.at.x, &atom.at.y, &atom.at.z};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::string_view field = columns(line, 31 + 8 * axis, 38 + 8 * axis);
-      const auto number = finite_number(trimmed(field));
+      const std::string_view word = trimmed(columns(line, 31 + 8 * axis, 38 + 8 * axis));
+      const auto number = finite_number(word);
       if (!number && line.size() < 54)
-        return problems_.complain(line.data(), "the line ends before its coordinates",
+        return problems_.complain(line.data() + line.size(), "the line ends before its coordinates",
                                   "they stand in columns 31 to 54");
       if (!number)
-        return problems_.complain(field.data(), quoted_word(trimmed(field)) + " is not a finite number",
-                                  "coordinates stand in columns 31 to 54, eight each");
-      *coordinates[axis] = *number;
+        problems_.complain(word.data(), quoted_word(word) + " is not a finite number",
+                           "coordinates stand in columns 31 to 54, eight each");
+      else refuse_beyond(*number * options_.scale, word.data(), problems_);
+      *coordinates[axis] = number.value_or(0);
     }
     const auto element = element_of(line, is_hetero);
     if (!element)

@@ -1,4 +1,4 @@
-// Two passes: lines to nodes, then parents from ids to indices.
+// Two passes: lines to nodes, then parents from ids to indices; the second also after mistakes of the first.
 #include "renderer/scene/files/swc.h"
 
 #include <array>
@@ -24,47 +24,64 @@ class SwcReader {
     list_.reserve(lines.count());
     nodes_.reserve(lines.count());
     for (std::string_view line; !problems_.is_full() && lines.next(line);) read_line(line);
-    if (nodes_.empty() && problems_.none())
-      problems_.complain_of_file("the file has no nodes", "a line is: id type x y z radius parent");
-    if (problems_.none()) list_.parents() = parent_indices(nodes_, problems_);
+    if (nodes_.empty() && problems_.none()) problems_.complain_of_file("the file has no nodes", form);
+    const bool are_lines_good = problems_.none();
+    if (!problems_.is_full()) list_.parents() = parent_indices(nodes_, problems_);
     SkeletonFile made;
-    if (problems_.none()) made = std::move(list_).finish();
+    if (are_lines_good) made = std::move(list_).finish();
     if (!problems_.none()) return problems_.take();
     return made;
   }
 
  private:
-  enum Column { Id, Type, X, Y, Z, Radius, Parent, Columns };
+  enum Column : std::size_t { Id, Type, X, Y, Z, Radius, Parent, Columns };
+  static constexpr const char* form = "a line is: id type x y z radius parent";
+  struct Row {
+    std::array<std::string_view, Columns> word;
+    std::array<std::optional<double>, Columns> number;
+  };
 
   void read_line(std::string_view line) {
-    const char* const start = line.data();
     line = line.substr(0, line.find('#'));
-    std::array<double, Columns> value{};
-    std::size_t column = 0;
-    for (; column < Columns; ++column) {
-      const std::string_view word = next_word(line);
-      if (word.empty()) break;
-      const auto number = finite_number(word);
-      if (!number)
-        return problems_.complain(word.data(), quoted_word(word) + " is not a finite number",
-                                  "a line is: id type x y z radius parent");
-      value[column] = *number;
+    Row row;
+    std::size_t count = 0;
+    bool has_number = false;
+    std::string_view word = next_word(line);
+    for (; count < Columns && !word.empty(); word = next_word(line), ++count) {
+      row.word[count] = word;
+      row.number[count] = finite_number(word);
+      has_number = has_number || row.number[count];
     }
-    if (column == 0) return;
-    if (column < Columns)
-      return problems_.complain(start, fmt::format("the line has {} columns, it needs 7", column),
-                                "a line is: id type x y z radius parent");
-    add(value, start);
+    if (count == 0) return;
+    for (std::size_t c = 0; c < count; ++c)
+      if (!row.number[c]) {
+        problems_.complain(row.word[c].data(), quoted_word(row.word[c]) + " is not a finite number", form);
+        if (!has_number) return;  // a line of words is one mistake
+      }
+    if (count < Columns)
+      problems_.complain(word.data(), fmt::format("the line ends after {} columns, it needs 7", count), form);
+    add(row);
   }
 
-  void add(const std::array<double, Columns>& value, const char* place) {
-    for (const Column c : {Id, Type, Parent})
-      if (!whole_number(value[c]))
-        return problems_.complain(place, fmt::format("the {} is not a whole number", c == Id     ? "id"
-                                                                                     : c == Type ? "type"
-                                                                                                 : "parent"));
-    nodes_.push_back({*whole_number(value[Id]), *whole_number(value[Parent]), place});
-    list_.add({value[X], value[Y], value[Z]}, value[Radius], place);
+  // A node with mistakes keeps its id, so that what names it is not a second mistake.
+  void add(const Row& row) {
+    const auto id = whole(row, Id, "id"), parent = whole(row, Parent, "parent");
+    whole(row, Type, "type");
+    if (id)
+      nodes_.push_back({*id, parent.value_or(NamedNode::no_parent), row.word[Id].data(), row.word[Parent].data()});
+    const auto number = [&](Column c) { return row.number[c].value_or(0); };
+    const auto place = [&](Column c) { return row.word[c].data(); };
+    list_.add({number(X), number(Y), number(Z)}, number(Radius),
+              NodePlaces{{place(X), place(Y), place(Z)}, place(Radius)});
+  }
+
+  std::optional<long long> whole(const Row& row, Column column, const char* name) {
+    if (!row.number[column]) return std::nullopt;
+    const auto value = whole_number(*row.number[column]);
+    if (!value)
+      problems_.complain(row.word[column].data(),
+                         fmt::format("the {} {} is not a whole number", name, quoted_word(row.word[column])), form);
+    return value;
   }
 
   std::string_view text_;

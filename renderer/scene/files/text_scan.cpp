@@ -15,15 +15,25 @@ char line_end(std::string_view text) { return text.find('\n') == std::string_vie
 FileProblems::FileProblems(std::string_view text, const std::string& name)
     : text_(text), name_(name), end_(line_end(text)) {}
 
-void FileProblems::complain(const char* place, std::string message, std::string hint) {
+void FileProblems::add(const char* place, std::size_t length, std::string message, std::string hint) {
   if (is_full()) return;
-  if (!place) return complain_of_file(std::move(message), std::move(hint));
   const char* line = place;
   while (line != text_.data() && line[-1] != end_) --line;
   found_.push_back(
       {.where = {.file = name_, .line = static_cast<int>(line_of(place)), .column = static_cast<int>(place - line) + 1},
        .message = std::move(message),
-       .hint = std::move(hint)});
+       .hint = std::move(hint),
+       .length = static_cast<int>(std::clamp<std::size_t>(length, 1, 1000))});
+}
+
+void FileProblems::complain(const char* place, std::string message, std::string hint) {
+  if (!place) return complain_of_file(std::move(message), std::move(hint));
+  add(place, word_at(place).size(), std::move(message), std::move(hint));
+}
+
+void FileProblems::complain_of_line(const char* place, std::string message, std::string hint) {
+  const std::string_view rest = text_.substr(static_cast<std::size_t>(place - text_.data()));
+  add(place, std::min(rest.find_first_of("\r\n"), rest.size()), std::move(message), std::move(hint));
 }
 
 void FileProblems::complain_of_file(std::string message, std::string hint) {
@@ -42,6 +52,16 @@ Diagnostic FileProblems::warning(std::string message, std::string hint) const {
 
 std::size_t FileProblems::line_of(const char* place) const {
   return static_cast<std::size_t>(std::count(text_.data(), place, end_)) + 1;
+}
+
+std::string_view FileProblems::word_at(const char* place) const {
+  const std::string_view rest = text_.substr(static_cast<std::size_t>(place - text_.data()));
+  return rest.substr(0, rest.find_first_of(" \t\r\n,;"));
+}
+
+Diagnostics FileProblems::take() {
+  std::ranges::stable_sort(found_, {}, [](const Diagnostic& d) { return std::pair(d.where.line, d.where.column); });
+  return std::move(found_);
 }
 
 Lines::Lines(std::string_view text) : rest_(text), end_(line_end(text)) {

@@ -10,7 +10,8 @@
 namespace marrow {
 
 /// Collects what is wrong with one text, up to 20 mistakes. Places are pointers into the text, or null; line
-/// and column are counted only for what is reported. Text and name must outlive it.
+/// and column are counted only for what is reported, and the word that stands there is underlined. Text and name must
+/// outlive it.
 class FileProblems {
  public:
   static constexpr std::size_t max_problems = 20;
@@ -22,6 +23,8 @@ class FileProblems {
   bool is_full() const { return found_.size() >= max_problems || is_over_; }
 
   void complain(const char* place, std::string message, std::string hint = {});
+  /// About the line from there on, which is underlined.
+  void complain_of_line(const char* place, std::string message, std::string hint = {});
   /// About the whole file.
   void complain_of_file(std::string message, std::string hint = {});
   /// The last problem that is taken.
@@ -29,9 +32,14 @@ class FileProblems {
   Diagnostic warning(std::string message, std::string hint) const;
 
   std::size_t line_of(const char* place) const;  ///< from 1
-  Diagnostics take() { return std::move(found_); }
+  /// What stands there, up to a blank, a comma or a semicolon; empty at the end of a line.
+  std::string_view word_at(const char* place) const;
+  /// In the order of their places, those without one first.
+  Diagnostics take();
 
  private:
+  void add(const char* place, std::size_t length, std::string message, std::string hint);
+
   std::string_view text_;
   const std::string& name_;
   char end_;  ///< of a line

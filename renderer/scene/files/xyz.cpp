@@ -57,7 +57,7 @@ class XyzReader {
     if (problems_.none()) molecule_.atoms.reserve(std::min(count, lines_.count()));
     std::size_t read = 0;
     for (; read < count && !problems_.is_full() && lines_.next(line); ++read) read_atom(line);
-    if (problems_.none() && read < count)
+    if (!problems_.is_full() && read < count)
       problems_.complain_of_file(fmt::format("the first line says {} atoms, but the file has {}", count, read),
                                  "it was cut");
     SkeletonFile made;
@@ -81,32 +81,32 @@ class XyzReader {
   }
 
   void read_atom(std::string_view line) {
-    const char* const start = line.data();
     Atom atom{};
     double* const coordinates[] = {&atom.at.x, &atom.at.y, &atom.at.z};
     const std::size_t needed = std::max(columns_.symbol + 1, columns_.position + 3);
     for (std::size_t column = 0; column < needed; ++column) {
       const std::string_view word = next_word(line);
       if (word.empty())
-        return problems_.complain(start, fmt::format("the line has {} columns, it needs {}", column, needed),
+        return problems_.complain(word.data(),
+                                  fmt::format("the line ends after {} columns, it needs {}", column, needed),
                                   "a line is: symbol x y z");
-      if (column == columns_.symbol && !read_element(word, atom)) return;
+      if (column == columns_.symbol) read_element(word, atom);
       if (column < columns_.position || column >= columns_.position + 3) continue;
       const auto number = finite_number(word);
-      if (!number) return problems_.complain(word.data(), quoted_word(word) + " is not a finite number");
-      *coordinates[column - columns_.position] = *number;
+      if (!number) problems_.complain(word.data(), quoted_word(word) + " is not a finite number");
+      else refuse_beyond(*number * options_.scale, word.data(), problems_);
+      *coordinates[column - columns_.position] = number.value_or(0);
     }
     molecule_.atoms.push_back(atom);
   }
 
-  bool read_element(std::string_view word, Atom& atom) {
+  void read_element(std::string_view word, Atom& atom) {
     auto element = find_element(word);
     const auto number = element ? std::nullopt : finite_number(word);
     if (number && *number >= 1 && *number <= element_count && whole_number(*number))
       element = static_cast<std::uint8_t>(*number - 1);
     if (element) atom.element = *element;
     else problems_.complain(word.data(), quoted_word(word) + " is no chemical element", "a line is: symbol x y z");
-    return element.has_value();
   }
 
   Lines lines_;
