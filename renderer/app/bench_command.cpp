@@ -16,6 +16,7 @@
 #include "renderer/app/interrupt.h"
 #include "renderer/app/print.h"
 #include "renderer/app/report.h"
+#include "renderer/bench/dual_mesh.h"
 #include "renderer/bench/workload.h"
 #include "renderer/bench/workload_reader.h"
 #include "renderer/scene/input_files.h"
@@ -106,6 +107,18 @@ Diagnostics objections(const BenchSettings& settings) {
   return found;
 }
 
+// The grid of --mesh over each workload.
+Diagnostics grids_too_fine(const Chosen& chosen, const BenchSettings& settings) {
+  Diagnostics found;
+  if (!settings.mesh_spacing || *settings.mesh_spacing == 0) return found;
+  for (const Workload& w : chosen.workloads)
+    if (const double finest = finest_mesh_spacing(w.extent()); *settings.mesh_spacing < finest)
+      found.push_back(with_hint(
+          failure(fmt::format("--mesh: a grid of {} scene units is too fine for {}", *settings.mesh_spacing, w.name)),
+          fmt::format("its finest grid that fits in memory is --mesh {:.6g}; --mesh 0 leaves the mesh out", finest)));
+  return found;
+}
+
 Status make_folder(const fs::path& folder) {
   std::error_code error;
   if (fs::exists(folder, error) && !fs::is_directory(folder, error))
@@ -160,6 +173,8 @@ ExitCode run(const BenchCommand& command) {
   Chosen chosen = choose(command.workloads);
   report(chosen.warnings, chosen.sources, ExitCode::Ok);
   if (chosen.code != ExitCode::Ok) return report(chosen.problems, chosen.sources, chosen.code);
+  if (const auto found = grids_too_fine(chosen, command.settings); !found.empty())
+    return report(found, ExitCode::Usage);
   if (command.write_to) return write_scenes(std::move(chosen.workloads), command);
   return measure(chosen.workloads, command);
 }

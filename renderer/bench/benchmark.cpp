@@ -114,8 +114,8 @@ class Measurement {
   }
 
   // The mesh comes from surfaces of its own: its rays enter every cell, and what they build should not stay.
-  TriangleMesh mesh_of_scene(double& seconds) const {
-    TriangleMesh mesh;
+  Result<TriangleMesh> mesh_of_scene(double& seconds) const {
+    Result<TriangleMesh> mesh = TriangleMesh{};
     seconds = cost_of([&] {
                 if (const auto scene = prepare_scene(scene_, {}, settings_.threads))
                   mesh = dual_mesh(*scene->surfaces, out_.mesh_spacing, settings_.stop);
@@ -133,11 +133,12 @@ class Measurement {
     if (!(out_.mesh_spacing > 0) || is_stopped()) return;
     say("meshing");
     figures.name = "embree triangles";
-    const TriangleMesh mesh = mesh_of_scene(figures.mesh_s);
+    const auto mesh = mesh_of_scene(figures.mesh_s);
     if (is_stopped()) return;
-    figures.primitives = mesh.triangles.size();
+    if (!mesh) return out_.missing.push_back(figures.name + ": " + mesh.why().front().message);
+    figures.primitives = mesh->triangles.size();
     figures.build_s =
-        cost_of([&] { engine = embree_triangles(mesh, workload_.thinnest_radius() / 20, settings_.threads); }).wall_s;
+        cost_of([&] { engine = embree_triangles(*mesh, workload_.thinnest_radius() / 20, settings_.threads); }).wall_s;
     add_racer(figures, std::move(engine));
   }
 

@@ -2,12 +2,26 @@
 #include "renderer/bench/dual_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include <fmt/core.h>
 
 namespace marrow {
 namespace {
 
 using Index = std::array<int, 3>;
+
+// Surfaces may swell beyond the bounds: an eighth of the size, and two cubes.
+double margin_of(double size, double spacing) { return size / 8 + 2 * spacing; }
+
+// In double, as it may be any number.
+double corners_along(double size, double spacing) {
+  return std::ceil((size + 2 * margin_of(size, spacing)) / spacing) + 1;
+}
+double corners(const Vec3d& size, double spacing) {
+  return corners_along(size.x, spacing) * corners_along(size.y, spacing) * corners_along(size.z, spacing);
+}
 
 // Where an edge from the corner `corner` along `axis` meets the surface.
 struct Crossing {
@@ -25,10 +39,8 @@ class Flood {
       : surfaces_(surfaces), spacing_(spacing), stop_(stop) {
     const Box3 box = surfaces.bounds();
     for (std::size_t i = 0; i < 3; ++i) {
-      // Surfaces may swell beyond the bounds: an eighth of the size, and two cubes
-      const double margin = box.size()[i] / 8 + 2 * spacing;
-      lower_[i] = box.lower[i] - margin;
-      count_[i] = static_cast<int>(std::ceil((box.size()[i] + 2 * margin) / spacing)) + 1;
+      lower_[i] = box.lower[i] - margin_of(box.size()[i], spacing);
+      count_[i] = static_cast<int>(corners_along(box.size()[i], spacing));
     }
     known_.assign(std::size_t(count_[0]) * std::size_t(count_[1]) * std::size_t(count_[2]), 0);
   }
@@ -116,7 +128,22 @@ std::array<std::uint32_t, 4> cubes_around(const Crossing& c, const Flood& grid) 
 
 }  // namespace
 
-TriangleMesh dual_mesh(const Surfaces& surfaces, double spacing, StopRequest stop) {
+double finest_mesh_spacing(const Box3& bounds) {
+  constexpr double most_corners = double{1 << 29};
+  const Vec3d size = bounds.size();
+  double coarse = std::max(max_component(size), 1e-300), fine = coarse * 1e-9;
+  while (coarse > 1.001 * fine) {
+    const double middle = std::sqrt(coarse) * std::sqrt(fine);
+    (corners(size, middle) <= most_corners ? coarse : fine) = middle;
+  }
+  constexpr double as_printed = 1 - 1e-12;  // two digits, read back, must not be below it
+  const double digit = std::pow(10, std::floor(std::log10(coarse)) - 1);
+  return std::ceil(coarse / digit) * digit * as_printed;
+}
+
+Result<TriangleMesh> dual_mesh(const Surfaces& surfaces, double spacing, StopRequest stop) {
+  if (const double finest = finest_mesh_spacing(surfaces.bounds()); !(spacing >= finest))
+    return failure(fmt::format("a grid of {:.6g} scene units is too fine; from {:.6g} on it fits", spacing, finest));
   Flood grid(surfaces, spacing, stop);
   grid.run();
   TriangleMesh mesh;

@@ -32,6 +32,8 @@ struct Workload {
   Workload flattened() const;
   /// Of all primitives with their radii.
   Box3 bounds() const;
+  /// Surfaces::bounds() of the workload: the skeletons, and the largest radius around.
+  Box3 extent() const;
   /// A place straight before the eye, along -z: on the plane z = 0 where that is at least 1 away, else at distance 1.
   Vec3d looked_at() const;
   double fov_deg() const;  ///< the whole angle of view

@@ -85,6 +85,13 @@ void write_swc(std::ostream& out, const Workload& w) {
   for (const auto& p : w.points) fmt::print(out, "{} 0 {} {} {} {} -1\n", ++id, p.at.x, p.at.y, p.at.z, p.radius);
 }
 
+Box3 placed(const Box3& box, const std::vector<Vec3d>& places) {
+  if (places.empty()) return box;
+  Box3 all;
+  for (const Vec3d& p : places) all.include(Box3{box.lower + p, box.upper + p});
+  return all;
+}
+
 Status written(std::ofstream& out, const std::filesystem::path& path) {
   out.close();
   if (out) return Done{};
@@ -104,10 +111,22 @@ Box3 Workload::bounds() const {
     include(s.to, s.radius_to);
   }
   for (const auto& p : points) include(p.at, p.radius);
-  if (places.empty()) return box;
-  Box3 all;
-  for (const Vec3d& p : places) all.include(Box3{box.lower + p, box.upper + p});
-  return all;
+  return placed(box, places);
+}
+
+Box3 Workload::extent() const {
+  Box3 box;
+  double largest_radius = 0;
+  const auto include = [&](const Vec3d& p, double r) {
+    box.include(p);
+    largest_radius = std::max(largest_radius, r);
+  };
+  for (const auto& s : segments) {
+    include(s.from, s.radius_from);
+    include(s.to, s.radius_to);
+  }
+  for (const auto& p : points) include(p.at, p.radius);
+  return placed(box.padded(largest_radius), places);
 }
 
 Vec3d Workload::looked_at() const { return {eye.x, eye.y, eye.z >= 1 ? 0 : eye.z - 1}; }

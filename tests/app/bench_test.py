@@ -147,6 +147,13 @@ class BenchTest(ProgramTest):
             with self.subTest(wrong):
                 self.assertIn(wrong[0], self.expect(2, "bench", "w3", *wrong).stderr)
 
+    def test_a_grid_that_fits_in_no_memory_is_refused_with_one_that_fits(self):
+        self.write("one.txt", "pt 0 0 0 1\n")
+        for spacing in ("1e-9", "1e-300", "0.001"):
+            error = self.expect(2, "bench", "w3", "one.txt", "--size", "16", "--mesh", spacing).stderr
+            self.assertRegex(error, "--mesh: a grid of .* too fine for w3\\n.* --mesh [0-9.]+;")
+            self.assertRegex(error, "too fine for one\\n.* --mesh 0.0031;")
+
     def test_warnings_of_skeletons_are_told(self):
         self.write("thin.swc", "1 0 0 0 0 0 -1\n2 0 2 0 0 1 1\n")
         done = self.expect(0, "bench", "thin.swc", "--write", "scenes")

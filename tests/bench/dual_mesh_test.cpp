@@ -36,7 +36,9 @@ Vec3d vertex(const TriangleMesh& mesh, std::uint32_t i) {
 
 TEST(DualMesh, OfABallIsABall) {
   const double spacing = 0.0473;  // so that no grid point lies on the surface
-  const TriangleMesh mesh = dual_mesh(Ball(), spacing);
+  const auto made = dual_mesh(Ball(), spacing);
+  ASSERT_TRUE(made);
+  const TriangleMesh& mesh = *made;
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   double volume = 0;
   for (const auto& t : mesh.triangles) {
@@ -51,6 +53,20 @@ TEST(DualMesh, OfABallIsABall) {
   EXPECT_NEAR(volume, 4 * std::numbers::pi / 3, 0.02);
   for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) EXPECT_NEAR(length(vertex(mesh, i)), 1, spacing * spacing);
   EXPECT_GT(mesh.triangles.size(), 6000u);
+}
+
+TEST(DualMesh, OfAGridThatFitsInNoMemoryIsRefused) {
+  for (const double spacing : {1e-9, 1e-300, 0.0, -1.0, std::nan("")})
+    EXPECT_FALSE(dual_mesh(Ball(), spacing)) << spacing;
+  EXPECT_TRUE(dual_mesh(Ball(), 1e15));
+}
+
+TEST(DualMesh, IsAsFineAsItsCornersAllow) {
+  const Box3 ball = Ball().bounds(), stick{{0, 0, 0}, {1e6, 1e-3, 1e-3}};
+  EXPECT_NEAR(finest_mesh_spacing(ball), 2 * 1.25 / 807, 2e-4);  // 807^3 is nearly 2^29
+  for (const Box3& box : {ball, stick, Box3{{0, 0, 0}, {0, 0, 0}}}) EXPECT_GT(finest_mesh_spacing(box), 0);
+  EXPECT_LT(finest_mesh_spacing(stick), 1);  // where a cube of its length would have 10^18
+  EXPECT_NEAR(finest_mesh_spacing({{0, 0, 0}, {2e6, 2e6, 2e6}}) / finest_mesh_spacing(ball), 1e6, 1e-3);
 }
 
 }  // namespace
