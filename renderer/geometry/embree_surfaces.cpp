@@ -15,14 +15,6 @@ namespace {
 
 std::vector<SolidPart> whole_elements(const Solid& solid) { return solid.Solid::parts(); }
 
-// Visits that begin at the end or behind it are made or not as the traversal happens to go: they do not count.
-RayRecord record_of(const std::vector<RayVisit>& visits, double undecided, double end) {
-  RayRecord r{.evaluations = 0, .certified = !(undecided < end)};
-  for (const RayVisit& v : visits)
-    if (v.begin < end) r.evaluations += v.evaluations;
-  return r;
-}
-
 double area_of(const Box3& box) {
   const Vec3d s = box.size();
   return s.x * s.y + s.y * s.z + s.z * s.x;
@@ -223,6 +215,24 @@ PartHierarchy::Hit EmbreeSurfaces::nearest_on(const Ray& ray, std::vector<RayVis
   return found;
 }
 
+// Whether the place of a hit is known as finely as surfaces are: to 1e-5 of the local radius, of which an element has
+// at most sixteen along its side. ray.at() rounds the origin, the way, and their sum.
+bool EmbreeSurfaces::is_resolved(const PartHierarchy::Hit& found, const Ray& ray) const {
+  constexpr double finest = 1e-5 / 16;
+  const double rounding = 0x1p-52 * (max_component(abs(ray.origin)) + std::fabs(found.t));
+  return rounding <= finest * max_component(solids_[found.solid].solid->element_box(found.element).size());
+}
+
+// Visits that begin at the end or behind it are made or not as the traversal happens to go: they do not count.
+RayRecord EmbreeSurfaces::record_of(const std::vector<RayVisit>& visits, const PartHierarchy::Hit& found,
+                                    const PlaneHit& behind, const Ray& ray) const {
+  const double end = std::min({found.reached(), behind.t, ray.t_max});
+  RayRecord r{.evaluations = 0, .certified = !(found.undecided < end) && (!found.found || is_resolved(found, ray))};
+  for (const RayVisit& v : visits)
+    if (v.begin < end) r.evaluations += v.evaluations;
+  return r;
+}
+
 std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray) const {
   const PlaneHit plane = nearest_plane(ray);
   return hit_of(nearest_on(until(ray, plane.t), nullptr), plane, ray);
@@ -233,7 +243,7 @@ std::optional<SurfaceHit> EmbreeSurfaces::first_hit(const Ray& ray, RayRecord& r
   visits.clear();
   const PlaneHit plane = nearest_plane(ray);
   const PartHierarchy::Hit found = nearest_on(until(ray, plane.t), &visits);
-  record = record_of(visits, found.undecided, std::min({found.reached(), plane.t, ray.t_max}));
+  record = record_of(visits, found, plane, ray);
   return hit_of(found, plane, ray);
 }
 
@@ -274,8 +284,7 @@ void EmbreeSurfaces::first_hits(std::span<const Ray> rays, std::span<std::option
   stream_first_hits(finest(), before.rays, found, std::span(visits).first(rays.size()));
   for (std::size_t i = 0; i < rays.size(); ++i) {
     ask_again(found[i], before.rays[i], &visits[i]);
-    records[i] =
-        record_of(visits[i], found[i].undecided, std::min({found[i].reached(), before.plane(i).t, rays[i].t_max}));
+    records[i] = record_of(visits[i], found[i], before.plane(i), rays[i]);
   }
   describe(found, before.planes(), rays, hits);
 }

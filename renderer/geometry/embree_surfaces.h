@@ -76,6 +76,9 @@ class EmbreeSurfaces final : public Surfaces {
   void ask_again(PartHierarchy::Hit& found, const Ray&, std::vector<RayVisit>* visits) const;
   bool hides(const PartHierarchy::Hit& any, const Ray&) const;
   PartHierarchy::Hit nearest_on(const Ray&, std::vector<RayVisit>*) const;
+  bool is_resolved(const PartHierarchy::Hit&, const Ray&) const;
+  RayRecord record_of(const std::vector<RayVisit>&, const PartHierarchy::Hit&, const PlaneHit& behind,
+                      const Ray&) const;
   const PartHierarchy& finest() const { return *finest_.load(std::memory_order_acquire); }
   bool is_cut_off(const Ray&, const SurfaceHit&) const;
   void uncover_start(std::size_t solid, const Ray&, SurfaceHit&) const;

@@ -34,7 +34,9 @@ struct SurfaceHit {
 struct RayRecord {
   /// Of fields, in all cells that the ray entered before its hit; those that tell on which side it begins not counted.
   std::uint32_t evaluations = 0;
-  bool certified = true;  ///< it is proved that no surface before the hit (or anywhere) was skipped
+  /// It is proved that no surface before the hit (or anywhere) was skipped, and doubles tell the place of the hit as
+  /// finely as surfaces of solids are traced.
+  bool certified = true;
 };
 
 /// Immutable and safe to call from many threads.

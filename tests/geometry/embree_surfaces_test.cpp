@@ -189,6 +189,31 @@ TEST(EmbreeSurfaces, LosesNoRayAlongTheFacesOfFlatBoxes) {
   EXPECT_EQ(lost, 0);
 }
 
+// Doubles tell places 1e12 sizes away to 1e-4 of the size: what is hit there may as well not be on the ray.
+TEST(EmbreeSurfaces, HitsAreNotCertifiedFromWhereNoDigitsAreLeft) {
+  Random random(108);
+  const BlendField blend = random_scene(random, {4, contact_alpha(4)}, 5);
+  const SolidScene scene({placed(blend)});
+  for (const double distance : {1e3, 1e6, 1e12, 1e14}) {
+    std::vector<Ray> rays;
+    for (int i = 0; i < 600; ++i) rays.push_back(from_afar(any_ray(random, blend), distance));
+    std::vector<std::optional<SurfaceHit>> hits(rays.size());
+    std::vector<RayRecord> records(rays.size());
+    scene.surfaces().first_hits(rays, hits, records);
+    int met = 0, certified = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      RayRecord alone;
+      scene.surfaces().first_hit(rays[i], alone);
+      EXPECT_EQ(alone.certified, records[i].certified);
+      met += hits[i].has_value();
+      certified += hits[i] && records[i].certified;
+    }
+    EXPECT_GT(met, 50) << distance;
+    if (distance < 1e9) EXPECT_GT(certified, 0.98 * met) << distance;
+    else EXPECT_EQ(certified, 0) << distance;
+  }
+}
+
 // Answers are the same before, after and while surfaces are refined, also of rays that begin inside.
 TEST(EmbreeSurfaces, AreRefinedWhileRaysAreUnderWay) {
   Random random(107);

@@ -107,7 +107,7 @@ class Film {
 
 /// Channels R G B A, Z, N.X N.Y N.Z, P.X P.Y P.Z, albedo.R/G/B, variance.R/G/B (of the mean) as float; object
 /// (id + 1, 0: none), samples, field.evals and field.certified (1: it is proved that the ray through the pixel's middle
-/// skipped no surface before its hit, or anywhere if it met none; 0: a gap stayed undecided) as unsigned. A is the
+/// skipped no surface before its hit, or anywhere if it met none; 0: RayRecord says why not) as unsigned. A is the
 /// share of samples that met a surface or a visible light; R G B also hold what is seen of the environment. No
 /// metadata. The rows are made from the film, which must outlive them, when they are asked for.
 PictureRows to_rows(const Film&);
