@@ -132,7 +132,9 @@ ExitCode write_scenes(std::vector<Workload> workloads, const BenchCommand& comma
   if (auto status = make_folder(*command.write_to); !status) return report(status.why(), ExitCode::CannotCreate);
   for (std::size_t count = 1000; count <= command.settings.largest_scaling; count *= 10)
     for (Workload& w : std::array{strands(count), tufts(count)}) workloads.push_back(std::move(w));
+  const auto& interrupted = interruption_flag();
   for (const Workload& w : workloads) {
+    if (interrupted) return complain("interrupted; the others are not written\n"), ExitCode::Interrupted;
     const fs::path scene = *command.write_to / (w.name + ".yaml");
     if (auto status = write_scene(w, command.settings.size, scene); !status)
       return report(status.why(), ExitCode::CannotCreate);

@@ -159,7 +159,8 @@ void describe(CLI::App& app, SliceCommand& c) {
   add_threads(app, c.request.threads);
   app.footer(
       "Examples:\n  marrow slice neuron.yaml --plane z=0\n"
-      "  marrow slice neuron.yaml --plane y=-1.5 -o field.exr --window -2,-2,2,2 --width 2048");
+      "  marrow slice neuron.yaml --plane y=-1.5 -o field.exr --window -2,-2,2,2 --width 2048\n"
+      "SIGINT or SIGTERM: nothing is written and the exit code is 75.");
 }
 
 void describe(CLI::App& app, BenchCommand& c) {

@@ -3,6 +3,8 @@
 
 #include "renderer/app/commands.h"
 #include "renderer/app/files.h"
+#include "renderer/app/interrupt.h"
+#include "renderer/app/print.h"
 #include "renderer/app/report.h"
 #include "renderer/app/scene_input.h"
 #include "renderer/output/exr.h"
@@ -59,8 +61,11 @@ ExitCode run(const SliceCommand& command) {
   if (!fields) return report(fields.why(), ExitCode::Usage);
   if (const auto status = check_writable(command.output); !status) return report(status.why(), ExitCode::CannotCreate);
 
-  const auto image = slice(largest_of(*fields), FieldProgram::iso(), extent_of(*fields), command.request);
+  SliceRequest request = command.request;
+  request.interrupted = &interruption_flag();
+  const auto image = slice(largest_of(*fields), FieldProgram::iso(), extent_of(*fields), request);
   if (!image) return report(image.why(), ExitCode::Usage);
+  if (interruption_flag()) return complain("interrupted; nothing was written\n"), ExitCode::Interrupted;
   const auto written = write(*image, command, scene->description);
   return written ? ExitCode::Ok : report(written.why(), ExitCode::WriteFailed);
 }

@@ -68,10 +68,11 @@ Vec3d pixel_center(const SliceImage& image, int x, int y) {
   return p;
 }
 
-void sample_rows(const FieldFunction& field, SliceImage& image) {
+void sample_rows(const FieldFunction& field, SliceImage& image, const std::atomic<bool>* interrupted) {
+  const auto is_over = [&] { return interrupted != nullptr && interrupted->load(std::memory_order_relaxed); };
   tbb::parallel_for(tbb::blocked_range<int>(0, image.height), [&](const tbb::blocked_range<int>& rows) {
     for (int y = rows.begin(); y < rows.end(); ++y)
-      for (int x = 0; x < image.width; ++x)
+      for (int x = 0; x < image.width && !is_over(); ++x)
         image.samples[index(y) * index(image.width) + index(x)] = field(pixel_center(image, x, y));
   });
 }
@@ -110,8 +111,9 @@ std::array<int, 2> slice_axes(int axis) {
 Result<SliceImage> slice(const FieldFunction& field, double iso, const Box3& bounds, const SliceRequest& request) {
   Result<SliceImage> image = blank(iso, bounds, request);
   if (!image) return image;
-  if (request.threads > 0) tbb::task_arena(request.threads).execute([&] { sample_rows(field, *image); });
-  else sample_rows(field, *image);
+  const auto sample = [&] { sample_rows(field, *image, request.interrupted); };
+  if (request.threads > 0) tbb::task_arena(request.threads).execute(sample);
+  else sample();
   return image;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <functional>
 #include <optional>
 #include <string>
@@ -40,6 +41,8 @@ struct SliceRequest {
   std::optional<std::pair<double, double>> range;  ///< of the colours; default: automatic_range
   std::string colormap = "viridis";
   int threads = 0;  ///< 0: as many as the caller's arena has
+  /// When it becomes true slice() ends soon, and its numbers mean nothing; it may be set by a signal handler.
+  const std::atomic<bool>* interrupted = nullptr;
 };
 
 /// Parses "z=0", "x = -1.5". Error: anything else.

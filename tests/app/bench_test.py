@@ -129,6 +129,19 @@ class BenchTest(ProgramTest):
         self.assertEqual(sorted(p.name for p in (self.folder / "scenes").iterdir()), ["strands-1000.yaml", "tufts-1000.yaml", "w1.yaml"])
         self.expect(0, "render", "scenes/w1.yaml", "--spp", "1", "-o", "w1.exr")
 
+    def test_an_interruption_leaves_whole_scenes(self):
+        with subprocess.Popen([PROGRAM, "bench", "w1", "--write", "scenes", "--scaling", "1000000"], cwd=self.folder,
+                              env=self.environment(), stderr=subprocess.PIPE, text=True) as process:
+            told = [process.stderr.readline()]
+            process.send_signal(signal.SIGINT)
+            told += process.stderr.readlines()
+            self.assertEqual(process.wait(timeout=60), 75)
+        self.assertEqual(told.pop(), "interrupted; the others are not written\n")
+        scenes = [line.removeprefix("wrote ").strip() for line in told]
+        self.assertEqual(sorted("scenes/" + p.name for p in (self.folder / "scenes").glob("*.yaml")), sorted(scenes))
+        for scene in scenes:
+            self.expect(0, "check", scene)
+
     def test_a_file_is_no_folder(self):
         self.write("keep.png", "")
         self.assertIn("`keep.png` is a file, not a folder", self.expect(73, "bench", "w3", "--write", "keep.png").stderr)

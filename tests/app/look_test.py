@@ -1,11 +1,26 @@
 """slice and info: windows into a scene."""
 import json
+import signal
+import subprocess
 import unittest
 
-from marrow_program import POINT, TWO_OBJECTS, ProgramTest
+from marrow_program import POINT, PROGRAM, TWO_OBJECTS, ProgramTest
 
 
 class SliceTest(ProgramTest):
+    def test_an_interrupted_slice_leaves_old_pictures_alone(self):
+        scene = self.write("two.yaml", TWO_OBJECTS)
+        self.write("slice.png", "old")
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with subprocess.Popen([PROGRAM, "slice", scene, "--plane", "z=0", "--width", "8000", "-t", "1"],
+                                  cwd=self.folder, env=self.environment(), stderr=subprocess.PIPE, text=True) as process:
+                self.wait_until_caught(process, number)
+                process.send_signal(number)
+                self.assertEqual(process.stderr.read(), "interrupted; nothing was written\n")
+                self.assertEqual(process.wait(timeout=30), 75)
+            self.assertEqual((self.folder / "slice.png").read_text(), "old")
+            self.assertEqual(self.files(), ["slice.png", scene])
+
     def test_a_slice_is_a_picture_or_numbers(self):
         scene = self.write("point.yaml", POINT)
         self.expect(0, "slice", scene, "--plane", "z=0", "--width", "64")

@@ -1,8 +1,10 @@
 """Runs the program in a folder of its own, and scenes small enough to render in a blink."""
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
+import time
 import unittest
 
 PROGRAM = os.environ["MARROW_PROGRAM"]
@@ -67,6 +69,14 @@ class ProgramTest(unittest.TestCase):
         done = self.run_marrow(*arguments, **keywords)
         self.assertEqual(done.returncode, code, f"{arguments}\n{done.stdout}\n{done.stderr}")
         return done
+
+    def wait_until_caught(self, process, number):
+        """Until the program has a handler of its own for the signal."""
+        caught = 0
+        while not caught >> (number - 1) & 1:
+            time.sleep(0.01)
+            status = pathlib.Path(f"/proc/{process.pid}/status").read_text(encoding="utf-8")
+            caught = int(re.search(r"SigCgt:\s*(\w+)", status)[1], 16)
 
     def files(self):
         return sorted(path.name for path in self.folder.iterdir())
