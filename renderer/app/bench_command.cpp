@@ -1,7 +1,6 @@
 // marrow bench: the program and its peers on common scenes.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <set>
@@ -99,9 +98,6 @@ Chosen choose(const std::vector<std::string>& asked) {
 // What each option by itself may be, and they together may not.
 Diagnostics objections(const BenchSettings& settings) {
   Diagnostics found;
-  if (settings.mesh_spacing && !std::isfinite(*settings.mesh_spacing))
-    found.push_back(failure(fmt::format("--mesh: a grid's spacing is a number from 0 to 1e15 scene units; found {}",
-                                        *settings.mesh_spacing)));
   if (settings.many_samples && !settings.processes)
     found.push_back(failure("--long asks for longer processes, and --no-processes for none: one of them is enough"));
   return found;
@@ -150,6 +146,11 @@ std::string closing_line(const std::vector<WorkloadFigures>& finished) {
                        : fmt::format("interrupted; finished {}\n", fmt::join(names, ", "));
 }
 
+// What has the name of a workload is its mistake; what has none is the machine's.
+ExitCode exit_code_of(const Diagnostic& why) {
+  return why.where.file.empty() ? ExitCode::Internal : ExitCode::BadInput;
+}
+
 ExitCode measure(const std::vector<Workload>& workloads, const BenchCommand& command) {
   BenchSettings settings = command.settings;
   settings.stop = {&interruption_flag()};
@@ -161,7 +162,7 @@ ExitCode measure(const std::vector<Workload>& workloads, const BenchCommand& com
         say(bench_text(w));
         std::fflush(stdout);
       });
-  if (!figures) return report(figures.why(), ExitCode::Internal);
+  if (!figures) return report(figures.why(), exit_code_of(figures.why().front()));
   if (command.json) say(bench_json(settings, *figures));
   if (!settings.stop.is_made()) return ExitCode::Ok;
   complain(closing_line(*figures));

@@ -63,7 +63,7 @@ class Measurement {
     say("reading and building");
     if (auto status = write_scene(workload_, settings_.size, scene_); !status) return status.why();
     auto ready = prepare_scene(scene_, {}, settings_.threads);
-    if (!ready) return ready.why();
+    if (!ready) return no_scene(ready.why().front());
     measure(*ready);
     if (settings_.stop.is_made()) return std::optional<WorkloadFigures>{};
     for (Racer& r : racers_) out_.engines.push_back(std::move(r.figures));
@@ -71,6 +71,12 @@ class Measurement {
   }
 
  private:
+  // Where in the temporary scene it stands tells nobody anything.
+  Diagnostic no_scene(Diagnostic why) const {
+    why.where = {.file = workload_.name};
+    why.message = "no scene can be made of it: " + why.message;
+    return why;
+  }
   void say(const std::string& what) const { tell_(workload_.name + ": " + what); }
   bool is_stopped() const { return settings_.stop.is_made(); }
 

@@ -88,7 +88,7 @@ struct WorkloadFigures {
 
 /// `tell` hears what is being done, `found` each workload's figures as soon as they are there. When asked to stop it
 /// returns the workloads that are finished, and leaves no temporary file. Errors: a workload of which Marrow makes no
-/// scene, a folder for temporary files that cannot be used.
+/// scene, in the file of its name; a folder for temporary files that cannot be used.
 Result<std::vector<WorkloadFigures>> run_benchmark(const std::vector<Workload>&, const BenchSettings&,
                                                    const std::function<void(const std::string&)>& tell,
                                                    const std::function<void(const WorkloadFigures&)>& found);

@@ -167,6 +167,10 @@ class BenchTest(ProgramTest):
             self.assertRegex(error, "--mesh: a grid of .* too fine for w3\\n.* --mesh [0-9.]+;")
             self.assertRegex(error, "too fine for one\\n.* --mesh 0.0031;")
 
+    def test_a_skeleton_of_which_no_scene_can_be_made(self):
+        self.write("thin.txt", "seg 0 0 0 1e-300  1 0 0 1e-300\n")
+        self.assertIn("thin: error: no scene can be made of it: ", self.expect(65, "bench", "thin.txt", *TINIEST).stderr)
+
     def test_warnings_of_skeletons_are_told(self):
         self.write("thin.swc", "1 0 0 0 0 0 -1\n2 0 2 0 0 1 1\n")
         done = self.expect(0, "bench", "thin.swc", "--write", "scenes")
