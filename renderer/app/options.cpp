@@ -5,6 +5,8 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -34,6 +36,20 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, Target& target,
       help);
 }
 
+/// A number in a range; where it is none the message says what would be right.
+template <class T>
+CLI::Validator from_to(T least, T most) {
+  constexpr bool is_whole = std::is_integral_v<T>;
+  const std::string range =
+      is_whole ? fmt::format("{} to {}", least, most) : fmt::format("{:g} to {:g}", double(least), double(most));
+  const auto check = [least, most, range](const std::string& text) {
+    T value{};
+    if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return std::string();
+    return fmt::format("a {} from {}; found '{}'", is_whole ? "whole number" : "number", range, text);
+  };
+  return CLI::Validator(check, range);
+}
+
 /// CLI11 would read a path as a quoted word; here it is taken as it stands.
 template <class Target>
 CLI::Option* add_path(CLI::App& app, const std::string& name, Target& target, const std::string& help) {
@@ -53,7 +69,7 @@ void add_scene(CLI::App& app, SceneInput& scene) {
 
 void add_threads(CLI::App& app, int& threads) {
   app.add_option("-t,--threads", threads, "Threads; default: all that the process may use")
-      ->check(CLI::Range(1, 4096))
+      ->check(from_to(1, 4096))
       ->type_name("N");
 }
 
@@ -65,7 +81,7 @@ void describe(CLI::App& app, RenderCommand& c) {
   add_scene(app, c.scene);
   add_path(app, "-o,--output", c.output, "Picture to write, .exr or .png; default: SCENE's stem, both");
   add_path(app, "--png", c.png, "PNG to write, through the view");
-  app.add_option("--spp", c.samples_per_pixel, "Samples per pixel")->check(CLI::Range(1, 1 << 24))->type_name("N");
+  app.add_option("--spp", c.samples_per_pixel, "Samples per pixel")->check(from_to(1, 1 << 24))->type_name("N");
   add_parsed<std::optional<double>, double>(app, "--time", c.time_limit_s, parse_time_limit, "Stop after this time")
       ->type_name("90s|10m|1h30m");
   add_parsed<std::optional<std::uint64_t>, std::uint64_t>(app, "--seed", c.seed, parse_seed, "Seed of the samples")
@@ -80,7 +96,7 @@ void describe(CLI::App& app, RenderCommand& c) {
       ->check(CLI::IsMember({"sse4", "avx2", "avx512"}));
   // For tests: none of these changes the picture.
   app.add_option("--embree-isa", c.embree_isa)->check(CLI::IsMember({"sse4", "avx2", "avx512"}))->group("");
-  app.add_option("--tile", c.tile_size)->check(CLI::Range(1, 4096))->group("");
+  app.add_option("--tile", c.tile_size)->check(from_to(1, 4096))->group("");
   app.add_flag("--eager", c.eager)->group("");
   auto* progress = app.add_option("--progress", c.progress, "auto, bar, plain or json (lines on standard error)");
   progress->transform(CLI::CheckedTransformer(styles).description(""))->type_name("STYLE");
@@ -154,7 +170,7 @@ void describe(CLI::App& app, SliceCommand& c) {
   add_parsed<std::optional<SliceWindow>, SliceWindow>(app, "--window", c.request.window, parse_window,
                                                       "Part of the plane, in scene units")
       ->type_name("u0,v0,u1,v1");
-  app.add_option("--width", c.request.width, "Pixels of the field")->check(CLI::Range(1, 1 << 15))->type_name("N");
+  app.add_option("--width", c.request.width, "Pixels of the field")->check(from_to(1, 1 << 15))->type_name("N");
   app.add_option("--colormap", c.request.colormap, "Colours")->check(CLI::IsMember(Colormap::names()));
   add_threads(app, c.request.threads);
   app.footer(
@@ -170,28 +186,26 @@ void describe(CLI::App& app, BenchCommand& c) {
          "read it (docs/command-line.md), .swc, .obj, .csv, .xyz, .pdb, .hair; default: w1, w2 and w3")
       ->type_name("NAME|FILE");
   app.add_flag("--json", c.json, "As JSON");
-  app.add_option("--size", c.settings.size, "Pixels of a side; default 1024")
-      ->check(CLI::Range(16, 8192))
-      ->type_name("N");
+  app.add_option("--size", c.settings.size, "Pixels of a side; default 1024")->check(from_to(16, 8192))->type_name("N");
   app.add_option("-t,--threads", c.settings.threads, "Threads of every engine; default 2")
-      ->check(CLI::Range(1, 4096))
+      ->check(from_to(1, 4096))
       ->type_name("N");
   app.add_option("--rounds", c.settings.rounds, "Turns of which medians are taken; default 3")
-      ->check(CLI::Range(1, 1000))
+      ->check(from_to(1, 1000))
       ->type_name("N");
   app.add_option("--mesh", c.settings.mesh_spacing,
                  "Grid of the meshed rival, scene units; 0: none; default: a 500th of the workload")
-      ->check(CLI::Range(0.0, 1e15))
+      ->check(from_to(0.0, 1e15))
       ->type_name("H");
   app.add_flag_callback(
       "--no-processes", [&c] { c.settings.processes = false; }, "Leaves out whole processes, and so POV-Ray");
   app.add_flag("--long", c.settings.many_samples, "Whole processes with --spp samples too: minutes");
   app.add_option("--spp", c.settings.samples,
                  "Samples of the long processes; default 16. POV-Ray takes the nearest square and one: 17")
-      ->check(CLI::Range(2, 4096))
+      ->check(from_to(2, 4096))
       ->type_name("N");
   app.add_option("--scaling", c.settings.largest_scaling, "Also 1000, 10,000, ... segments, up to N")
-      ->check(CLI::Range(1000, 1000000))
+      ->check(from_to(1000, 1000000))
       ->type_name("N");
   add_path(app, "--write", c.write_to, "Only writes the workloads into this folder, as scenes")->type_name("FOLDER");
   app.footer(
@@ -221,6 +235,21 @@ std::vector<std::string> options_of(const CLI::App& app) {
   return names;
 }
 
+// Options that take one value and have several.
+std::string given_too_often(const CLI::App& app) {
+  for (const auto* option : app.get_options())
+    if (option->get_expected_max() == 1 && option->count() > 1)
+      return fmt::format("{} is given {} times; once is enough", option->get_name(), option->count());
+  return "";
+}
+
+// The first word that no option and no argument takes; empty when all are taken. `--` ends the options.
+std::string unexpected_word(const CLI::App& app) {
+  for (const std::string& word : app.remaining())
+    if (word != "--") return word;
+  return "";
+}
+
 // CLI11 has its own exit codes and wording; what a caller sees is ours.
 ExitCode explain(const CLI::App& app, const CLI::ParseError& error) {
   const auto chosen = app.get_subcommands();
@@ -230,11 +259,14 @@ ExitCode explain(const CLI::App& app, const CLI::ParseError& error) {
     return ExitCode::Ok;
   }
   const std::string help = chosen.empty() ? "marrow" : "marrow " + speaker.get_name();
-  const auto extras = speaker.remaining();
-  if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError) || extras.empty())
-    return usage_error(error.what(), "", help);
-  const auto guess = nearest(extras.front(), options_of(speaker));
-  return usage_error("'" + extras.front() + "' was not expected", guess ? "did you mean " + *guess + "?" : "", help);
+  const auto is = [&](CLI::ExitCodes code) { return error.get_exit_code() == static_cast<int>(code); };
+  const std::string repeated = given_too_often(speaker), unexpected = unexpected_word(speaker);
+  if (is(CLI::ExitCodes::ArgumentMismatch) && !repeated.empty()) return usage_error(repeated, "", help);
+  // What is missing may be what was misspelt.
+  const bool is_extra = is(CLI::ExitCodes::ExtrasError) || is(CLI::ExitCodes::RequiredError);
+  if (!is_extra || unexpected.empty()) return usage_error(error.what(), "", help);
+  const auto guess = nearest(unexpected, options_of(speaker));
+  return usage_error("'" + unexpected + "' was not expected", guess ? "did you mean " + *guess + "?" : "", help);
 }
 
 }  // namespace
@@ -271,6 +303,12 @@ std::variant<Command, ExitCode> parse_options(int argc, const char* const* argv)
   };
 
   const auto names = names_of(app.get_subcommands({}));
+  // As people know it from other programs
+  if (argc > 1 && argv[1] == std::string_view("help")) {
+    const bool is_known = argc > 2 && std::find(names.begin(), names.end(), argv[2]) != names.end();
+    say(is_known ? app.get_subcommand(argv[2])->help("marrow") : app.help());
+    return ExitCode::Ok;
+  }
   if (argc > 1 && argv[1][0] != '-' && std::find(names.begin(), names.end(), argv[1]) == names.end())
     return usage_error(fmt::format("there is no command '{}'", argv[1]), suggest(argv[1], names), "marrow");
   if (argc < 2) {
