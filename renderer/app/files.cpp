@@ -45,6 +45,7 @@ Status check_writable(const fs::path& path) {
   }
   // A symbolic link keeps its name; what it points to is replaced in the folder where that stands.
   const fs::path folder = fs::weakly_canonical(fs::absolute(path), error).parent_path();
+  if (error) return failure("cannot be written: " + error.message(), path.string());
   if (!fs::is_directory(folder, error)) {
     return failure("cannot be written: there is no folder " + folder.string(), path.string());
   }

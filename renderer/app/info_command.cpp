@@ -110,11 +110,16 @@ std::string box_text(const Json& box) {
   return corner("lower") + " to " + corner("upper");
 }
 
+std::string counted(const Json& number, const char* noun) {
+  const auto count = number.get<std::size_t>();
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
 std::string object_text(const Json& object) {
   std::string text = fmt::format("  {:<12} {}", object["name"].get<std::string>(), object["kind"].get<std::string>());
   if (object.contains("primitives"))
-    text += fmt::format(", {} primitives in {} blends, {}", object["primitives"].get<std::size_t>(),
-                        object["blends"].get<std::size_t>(), box_text(object["extent"]));
+    text += fmt::format(", {} in {}, {}", counted(object["primitives"], "primitive"),
+                        counted(object["blends"], "blend"), box_text(object["extent"]));
   if (object.contains("general_tracer"))
     for (const Json& part : object["general_tracer"])
       text += fmt::format("\n  {:<12} {} of its parts in the general tracer, which is slower: {}", "",

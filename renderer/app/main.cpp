@@ -1,6 +1,7 @@
 // The program: a command line becomes a command, and the command is done.
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <variant>
 
 #include "renderer/app/commands.h"
@@ -28,6 +29,10 @@ ExitCode after_flushing(ExitCode code) {
 int main(int argc, char** argv) {
   try {
     return static_cast<int>(after_flushing(obey(argc, argv)));
+  } catch (const std::bad_alloc&) {
+    Diagnostic out = failure("there is not enough memory");
+    out.hint = "a smaller picture (--crop, film.size), fewer threads or a smaller scene take less";
+    return static_cast<int>(report({out}, ExitCode::Internal));
   } catch (const std::exception& error) {
     return static_cast<int>(report({failure(std::string("internal error: ") + error.what())}, ExitCode::Internal));
   }

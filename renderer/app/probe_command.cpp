@@ -92,6 +92,16 @@ void print_samples(const FieldObject& field, const SceneDescription& scene, cons
   say(fmt::format("{}]\n", points.empty() ? "[" : "\n"));
 }
 
+Diagnostic several_fields(const std::vector<const FieldObject*>& fields, const SceneDescription& scene) {
+  constexpr std::size_t most = 24;
+  std::vector<std::string_view> names;
+  for (const FieldObject* field : fields)
+    if (names.size() < most) names.push_back(scene.objects[field->object.index()].name);
+  Diagnostic several = failure("the scene has several fields; choose one by --object");
+  several.hint = fmt::format("there are {}{}", fmt::join(names, ", "), fields.size() > most ? ", …" : "");
+  return several;
+}
+
 Result<std::vector<Vec3d>> points_of(const std::filesystem::path& path, SourceCache& sources) {
   if (path == "-") return read_points(std::cin, "<stdin>", sources);
   std::ifstream file(path);
@@ -107,8 +117,7 @@ ExitCode run(const ProbeCommand& command) {
   report(record.warnings, record.sources, ExitCode::Ok);
   const auto fields = select_fields(*scene, command.object);
   if (!fields) return report(fields.why(), ExitCode::Usage);
-  if (fields->size() > 1)
-    return report({failure("the scene has several fields; choose one by --object")}, ExitCode::Usage);
+  if (fields->size() > 1) return report({several_fields(*fields, scene->description)}, ExitCode::Usage);
 
   if (command.points != "-") {
     if (const auto status = check_readable(command.points); !status) return report(status.why(), ExitCode::NoInput);

@@ -46,8 +46,12 @@ Result<SliceImage> blank(double iso, const Box3& bounds, const SliceRequest& req
   if (!(window->width() > 0) || !(aspect > 0) || !std::isfinite(aspect))
     return failure("the window of the slice is empty or not finite");
   const double height = std::max(1.0, std::floor(request.width * aspect + 0.5));
-  if (request.width < 1 || request.width * height > most_pixels)
-    return failure(fmt::format("{} x {:.0f} pixels: a slice has from 1 to 2^26", request.width, height));
+  if (request.width < 1 || request.width * height > most_pixels) {
+    Diagnostic d = failure(fmt::format("{} x {:.0f} pixels: a slice has from 1 to 2^26", request.width, height));
+    if (const double widest = std::floor(std::sqrt(most_pixels / aspect)); widest >= 1)
+      d.hint = fmt::format("a width of {:.0f} fits this window", std::min(widest, most_pixels));
+    return d;
+  }
   SliceImage image{.axis = request.axis,
                    .offset = request.offset,
                    .iso = iso,
