@@ -28,6 +28,16 @@ std::string indent_to(std::string_view line, int column) {
   return indent;
 }
 
+// Behind the caret, a character each; what goes on in further lines is underlined to the end of the first.
+std::string rest_of_underline(std::string_view line, const Diagnostic& d) {
+  const auto start = static_cast<std::size_t>(std::max(0, d.where.column - 1));
+  const std::string_view marked =
+      start < line.size() ? line.substr(start, static_cast<std::size_t>(std::max(1, d.length))) : "";
+  const auto characters = std::count_if(marked.begin(), marked.end(),
+                                        [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+  return std::string(static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, characters) - 1), '~');
+}
+
 std::string place(const SourceLocation& where) {
   std::string text = where.file;
   if (where.line > 0) text += ':' + std::to_string(where.line);
@@ -45,10 +55,7 @@ std::string render(const Diagnostic& d, std::string_view text) {
     const std::string number = std::to_string(d.where.line);
     const std::string gutter(std::max<std::size_t>(5, number.size() + 1), ' ');
     out += std::string(gutter.size() - number.size(), ' ') + number + " | " + std::string(line) + '\n';
-    // What goes on in further lines is underlined to the end of the first.
-    const int rest = static_cast<int>(line.size()) - d.where.column;
-    out += gutter + " | " + indent_to(line, d.where.column) + '^' +
-           std::string(static_cast<std::size_t>(std::max(0, std::min(d.length - 1, rest))), '~') + '\n';
+    out += gutter + " | " + indent_to(line, d.where.column) + '^' + rest_of_underline(line, d) + '\n';
   }
   if (!d.hint.empty()) out += "      = " + d.hint + '\n';
   return out;

@@ -53,20 +53,20 @@ class WorkloadText {
     if (keyword.empty()) return;
     const auto* s = std::ranges::find(statements, keyword, &Statement::keyword);
     if (s == statements.end())
-      return problems_.complain(keyword.data(), quoted_word(keyword) + " is not a statement",
+      return problems_.complain(keyword, quoted_word(keyword) + " is not a statement",
                                 "a line begins with cam, light, seg or pt");
     std::array<Number, most_numbers> numbers{};
     std::size_t count = 0;
     for (std::string_view word = next_word(line); !word.empty(); word = next_word(line), ++count) {
-      if (count == s->most) return problems_.complain(word.data(), "there are too many numbers", s->form);
+      if (count == s->most) return problems_.complain(word, "there are too many numbers", s->form);
       const auto number = finite_number(word);
-      if (!number) return problems_.complain(word.data(), quoted_word(word) + " is not a finite number", s->form);
+      if (!number) return problems_.complain(word, quoted_word(word) + " is not a finite number", s->form);
       if (std::fabs(*number) > largest)
-        return problems_.complain(word.data(), quoted_word(word) + " is too large",
+        return problems_.complain(word, quoted_word(word) + " is too large",
                                   "nothing in a scene may be larger than 1e15");
       numbers[count] = {*number, word};
     }
-    if (count < s->least) return problems_.complain(keyword.data(), fmt::format("found {} numbers", count), s->form);
+    if (count < s->least) return problems_.complain(keyword, fmt::format("found {} numbers", count), s->form);
     (this->*s->take)(numbers.data(), keyword.data());
   }
 
@@ -80,11 +80,11 @@ class WorkloadText {
     made_.eye = vec(n);
     made_.tan_half_fov = n[3].value;
     if (eye_is_too_far(made_))
-      problems_.complain(n[2].word.data(), "the eye looks beyond 1e15 scene units",
+      problems_.complain(n[2].word, "the eye looks beyond 1e15 scene units",
                          "nothing in a scene may be larger than 1e15");
     // As `fov` of a scene's camera
     if (!(made_.fov_deg() >= 0.001 && made_.fov_deg() <= 179))
-      problems_.complain(n[3].word.data(), quoted_word(n[3].word) + " is no tangent of half an angle of view",
+      problems_.complain(n[3].word, quoted_word(n[3].word) + " is no tangent of half an angle of view",
                          "a number from 8.73e-06 to 114.58, for angles from 0.001 to 179 degrees");
   }
   void take_light(const Number* n, const char* place) {
@@ -94,7 +94,7 @@ class WorkloadText {
   }
   void check_positive(const Number& n, const char* what) {
     if (!(n.value > 0))
-      problems_.complain(n.word.data(), fmt::format("the {} {} is not above 0", what, quoted_word(n.word)),
+      problems_.complain(n.word, fmt::format("the {} {} is not above 0", what, quoted_word(n.word)),
                          fmt::format("a {} is above 0", what));
   }
   void check_strength(const Number& n) {

@@ -96,11 +96,15 @@ TEST(Swc, TellsAllMistakesOfAFileInTheOrderOfItsLines) {
 }
 
 TEST(Swc, UnderlinesWhatIsWrong) {
-  const std::string text = "1 1 0 12.5e99 0 1 -1\n";
-  const auto swc = read(text);
-  ASSERT_FALSE(swc);
-  EXPECT_NE(render(swc.why()[0], text).find("      |       ^~~~~~~\n"), std::string::npos)
-      << render(swc.why()[0], text);
+  const auto underline = [](const std::string& text, const SkeletonOptions& options = {}) {
+    const auto swc = read(text, options);
+    return swc ? "" : render(swc.why()[0], text);
+  };
+  EXPECT_NE(underline("1 1 0 12.5e99 0 1 -1\n").find("|       ^~~~~~~\n"), std::string::npos);
+  EXPECT_NE(underline("1,1,0,0,0,1,-1\n").find("| ^~~~~~~~~~~~~~\n"), std::string::npos);
+  EXPECT_NE(underline("1 1 0 \u00fc\u00fc 0 1 -1\n").find("|       ^~\n"), std::string::npos);  // a character each
+  EXPECT_NE(underline("1 1 20 0 0 1 -1\n", {.scale = 1e15}).find("`20` lies beyond 1e15 scene units, scaled to 2e+16"),
+            std::string::npos);
 }
 
 TEST(Swc, StopsAfterTwentyMistakes) {

@@ -17,7 +17,12 @@ constexpr const char* hint_of_largest = "nothing in a scene may be larger than 1
 
 void refuse_beyond(double in_scene_units, const char* place, FileProblems& problems) {
   if (std::fabs(in_scene_units) <= largest) return;
-  problems.complain(place, quoted_word(problems.word_at(place)) + " lies beyond 1e15 scene units", hint_of_largest);
+  const std::string_view word = problems.word_at(place);
+  const bool is_scaled = finite_number(word) != in_scene_units;
+  problems.complain(word,
+                    fmt::format("{} lies beyond 1e15 scene units{}", quoted_word(word),
+                                is_scaled ? fmt::format(", scaled to {:.3g}", in_scene_units) : ""),
+                    hint_of_largest);
 }
 
 void NodeList::reserve(std::size_t nodes) {

@@ -73,13 +73,13 @@ class ObjReader {
     for (; !word.empty(); word = next_word(line), ++count) {
       const auto number = finite_number(word);
       if (!number) {
-        problems_.complain(word.data(), quoted_word(word) + " is not a finite number", hint);
+        problems_.complain(word, quoted_word(word) + " is not a finite number", hint);
         place = nullptr;
       }
       if (count < 4 && number) value[count] = *number;
     }
     if (count < 3) {
-      problems_.complain(word.data(), fmt::format("the vertex ends after {} numbers, it needs 3", count), hint);
+      problems_.complain(word, fmt::format("the vertex ends after {} numbers, it needs 3", count), hint);
       place = nullptr;
     }
     if (count > 5) value[3] = std::numeric_limits<double>::quiet_NaN();
@@ -109,9 +109,9 @@ class ObjReader {
       return static_cast<std::int32_t>(*index - 1);
     if (index && *index < 0 && *index >= -count) return static_cast<std::int32_t>(count + *index);
     if (index && *index < 0)
-      problems_.complain(word.data(), fmt::format("there is no vertex {}: {} came before", *index, count));
+      problems_.complain(word, fmt::format("there is no vertex {}: {} came before", *index, count));
     else
-      problems_.complain(word.data(), quoted_word(word) + " is not the number of a vertex",
+      problems_.complain(word, quoted_word(word) + " is not the number of a vertex",
                          "vertices are counted from 1, or from -1 backwards");
     return broken_index;
   }

@@ -75,7 +75,7 @@ class PdbReader {
         return problems_.complain(line.data() + line.size(), "the line ends before its coordinates",
                                   "they stand in columns 31 to 54");
       if (!number)
-        problems_.complain(word.data(), quoted_word(word) + " is not a finite number",
+        problems_.complain(word, quoted_word(word) + " is not a finite number",
                            "coordinates stand in columns 31 to 54, eight each");
       else refuse_beyond(*number * options_.scale, word.data(), problems_);
       *coordinates[axis] = number.value_or(0);

@@ -55,11 +55,11 @@ class SwcReader {
     if (count == 0) return;
     for (std::size_t c = 0; c < count; ++c)
       if (!row.number[c]) {
-        problems_.complain(row.word[c].data(), quoted_word(row.word[c]) + " is not a finite number", form);
+        problems_.complain(row.word[c], quoted_word(row.word[c]) + " is not a finite number", form);
         if (!has_number) return;  // a line of words is one mistake
       }
     if (count < Columns)
-      problems_.complain(word.data(), fmt::format("the line ends after {} columns, it needs 7", count), form);
+      problems_.complain(word, fmt::format("the line ends after {} columns, it needs 7", count), form);
     add(row);
   }
 
@@ -79,7 +79,7 @@ class SwcReader {
     if (!row.number[column]) return std::nullopt;
     const auto value = whole_number(*row.number[column]);
     if (!value)
-      problems_.complain(row.word[column].data(),
+      problems_.complain(row.word[column],
                          fmt::format("the {} {} is not a whole number", name, quoted_word(row.word[column])), form);
     return value;
   }

@@ -31,6 +31,10 @@ void FileProblems::complain(const char* place, std::string message, std::string 
   add(place, word_at(place).size(), std::move(message), std::move(hint));
 }
 
+void FileProblems::complain(std::string_view word, std::string message, std::string hint) {
+  add(word.data(), word.size(), std::move(message), std::move(hint));
+}
+
 void FileProblems::complain_of_line(const char* place, std::string message, std::string hint) {
   const std::string_view rest = text_.substr(static_cast<std::size_t>(place - text_.data()));
   add(place, std::min(rest.find_first_of("\r\n"), rest.size()), std::move(message), std::move(hint));

@@ -23,6 +23,8 @@ class FileProblems {
   bool is_full() const { return found_.size() >= max_problems || is_over_; }
 
   void complain(const char* place, std::string message, std::string hint = {});
+  /// A word of the text; an empty one where a word is missing.
+  void complain(std::string_view word, std::string message, std::string hint = {});
   /// About the line from there on, which is underlined.
   void complain_of_line(const char* place, std::string message, std::string hint = {});
   /// About the whole file.

@@ -87,13 +87,12 @@ class XyzReader {
     for (std::size_t column = 0; column < needed; ++column) {
       const std::string_view word = next_word(line);
       if (word.empty())
-        return problems_.complain(word.data(),
-                                  fmt::format("the line ends after {} columns, it needs {}", column, needed),
+        return problems_.complain(word, fmt::format("the line ends after {} columns, it needs {}", column, needed),
                                   "a line is: symbol x y z");
       if (column == columns_.symbol) read_element(word, atom);
       if (column < columns_.position || column >= columns_.position + 3) continue;
       const auto number = finite_number(word);
-      if (!number) problems_.complain(word.data(), quoted_word(word) + " is not a finite number");
+      if (!number) problems_.complain(word, quoted_word(word) + " is not a finite number");
       else refuse_beyond(*number * options_.scale, word.data(), problems_);
       *coordinates[column - columns_.position] = number.value_or(0);
     }
@@ -106,7 +105,7 @@ class XyzReader {
     if (number && *number >= 1 && *number <= element_count && whole_number(*number))
       element = static_cast<std::uint8_t>(*number - 1);
     if (element) atom.element = *element;
-    else problems_.complain(word.data(), quoted_word(word) + " is no chemical element", "a line is: symbol x y z");
+    else problems_.complain(word, quoted_word(word) + " is no chemical element", "a line is: symbol x y z");
   }
 
   Lines lines_;
