@@ -15,6 +15,8 @@ namespace {
 
 std::vector<SolidPart> whole_elements(const Solid& solid) { return solid.Solid::parts(); }
 
+double longest_side(const Box3& box) { return max_component(box.size()); }
+
 double area_of(const Box3& box) {
   const Vec3d s = box.size();
   return s.x * s.y + s.y * s.z + s.z * s.x;
@@ -48,6 +50,8 @@ Result<std::unique_ptr<EmbreeSurfaces>> EmbreeSurfaces::make(std::vector<PlacedS
   for (const PlacedSolid& p : s->solids_) {
     s->extent_.include(p.solid->extent());
     elements.emplace_back(p.solid.get(), p.object, whole_elements(*p.solid));
+    for (const SolidPart& element : elements.back().parts)
+      s->smallest_element_ = std::min(s->smallest_element_, longest_side(element.box));
   }
   auto whole = PartHierarchy::make(s->device_.get(), std::move(elements));
   if (!whole) return whole.why();
@@ -220,7 +224,8 @@ PartHierarchy::Hit EmbreeSurfaces::nearest_on(const Ray& ray, std::vector<RayVis
 bool EmbreeSurfaces::is_resolved(const PartHierarchy::Hit& found, const Ray& ray) const {
   constexpr double finest = 1e-5 / 16;
   const double rounding = 0x1p-52 * (max_component(abs(ray.origin)) + std::fabs(found.t));
-  return rounding <= finest * max_component(solids_[found.solid].solid->element_box(found.element).size());
+  if (rounding <= finest * smallest_element_) return true;
+  return rounding <= finest * longest_side(solids_[found.solid].solid->element_box(found.element));
 }
 
 // Visits that begin at the end or behind it are made or not as the traversal happens to go: they do not count.

@@ -92,7 +92,8 @@ class EmbreeSurfaces final : public Surfaces {
 
   std::vector<PlacedSolid> solids_;
   std::vector<PlacedPlane> planes_;
-  Box3 extent_;  // of all solids
+  Box3 extent_;                                                        // of all solids
+  double smallest_element_ = std::numeric_limits<double>::infinity();  // its longest side
   EmbreeDevice device_;
   UnitedSolids united_;
   std::unique_ptr<const PartHierarchy> whole_;  // of whole elements
