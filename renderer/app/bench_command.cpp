@@ -146,9 +146,9 @@ std::string closing_line(const std::vector<WorkloadFigures>& finished) {
                        : fmt::format("interrupted; finished {}\n", fmt::join(names, ", "));
 }
 
-// What has the name of a workload is its mistake; what has none is the machine's.
+// What has the name of a workload is its mistake; what has none is about temporary files.
 ExitCode exit_code_of(const Diagnostic& why) {
-  return why.where.file.empty() ? ExitCode::Internal : ExitCode::BadInput;
+  return why.where.file.empty() ? ExitCode::CannotCreate : ExitCode::BadInput;
 }
 
 ExitCode measure(const std::vector<Workload>& workloads, const BenchCommand& command) {

@@ -258,7 +258,11 @@ Result<std::vector<WorkloadFigures>> run_benchmark(const std::vector<Workload>& 
                                                    const std::function<void(const std::string&)>& tell,
                                                    const std::function<void(const WorkloadFigures&)>& found) {
   const TemporaryFolder folder;
-  if (folder.path().empty()) return failure("cannot make a folder for temporary files");
+  if (folder.path().empty()) {
+    Diagnostic none = failure("cannot make a folder for temporary files: " + folder.why_not());
+    none.hint = "TMPDIR names the folder in which it is made";
+    return none;
+  }
   std::vector<WorkloadFigures> all;
   const auto measure = [&](const Workload& workload, const BenchSettings& how) -> Status {
     auto figures = Measurement(workload, how, folder.path(), tell).run();

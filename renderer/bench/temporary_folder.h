@@ -1,6 +1,7 @@
 // A folder for scene files and pictures that goes away with everything in it.
 #pragma once
 
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -14,6 +15,7 @@ class TemporaryFolder {
     std::error_code error;
     std::string name = (std::filesystem::temp_directory_path(error) / "marrow-bench-XXXXXX").string();
     if (!error && mkdtemp(name.data()) != nullptr) path_ = name;
+    else why_not_ = error ? error.message() : std::generic_category().message(errno);
   }
   ~TemporaryFolder() {
     std::error_code ignored;
@@ -23,9 +25,11 @@ class TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   /// Empty when it could not be made.
   const std::filesystem::path& path() const { return path_; }
+  const std::string& why_not() const { return why_not_; }
 
  private:
   std::filesystem::path path_;
+  std::string why_not_;
 };
 
 }  // namespace marrow

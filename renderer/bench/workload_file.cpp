@@ -1,8 +1,10 @@
 // Workloads by name, their bounds, and their scene files.
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <limits>
 #include <span>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -92,10 +94,14 @@ Box3 placed(const Box3& box, const std::vector<Vec3d>& places) {
   return all;
 }
 
+Status cannot_write(const std::filesystem::path& path) {
+  return failure("cannot write " + path.string() + ": " + std::generic_category().message(errno));
+}
+
 Status written(std::ofstream& out, const std::filesystem::path& path) {
   out.close();
   if (out) return Done{};
-  return failure("cannot write " + path.string());
+  return cannot_write(path);
 }
 
 }  // namespace
@@ -169,6 +175,7 @@ Result<Workload> workload_named(std::string_view name) {
 
 Status write_scene(const Workload& w, int film_size, const std::filesystem::path& scene) {
   std::ofstream out(scene);
+  if (!out) return cannot_write(scene);
   write_head(out, w, film_size);
   write_blend_head(out, w);
   if (w.segments.size() + w.points.size() < many) {
@@ -181,6 +188,7 @@ Status write_scene(const Workload& w, int film_size, const std::filesystem::path
   fmt::print(out, "          - skeleton: {{file: {}}}\n", data.filename().string());
   if (auto status = written(out, scene); !status) return status;
   std::ofstream skeleton(data);
+  if (!skeleton) return cannot_write(data);
   write_swc(skeleton, w);
   return written(skeleton, data);
 }

@@ -167,6 +167,12 @@ class BenchTest(ProgramTest):
             self.assertRegex(error, "--mesh: a grid of .* too fine for w3\\n.* --mesh [0-9.]+;")
             self.assertRegex(error, "too fine for one\\n.* --mesh 0.0031;")
 
+    def test_folders_that_cannot_be_used_are_told_with_the_reason(self):
+        error = self.expect(73, "bench", "w3", *TINIEST, TMPDIR=str(self.folder / "nowhere")).stderr
+        self.assertRegex(error, "temporary files: .+\\n.*TMPDIR")
+        (self.folder / "w3.yaml").mkdir()
+        self.assertIn("w3.yaml: Is a directory", self.expect(73, "bench", "w3", "--write", ".").stderr)
+
     def test_a_skeleton_of_which_no_scene_can_be_made(self):
         self.write("thin.txt", "seg 0 0 0 1e-300  1 0 0 1e-300\n")
         self.assertIn("thin: error: no scene can be made of it: ", self.expect(65, "bench", "thin.txt", *TINIEST).stderr)
