@@ -1,6 +1,7 @@
 // The workloads run, with Marrow and what there is of its peers in turns.
 #include "renderer/bench/benchmark.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -52,7 +53,8 @@ class Measurement {
         frame_{settings.size, settings.threads, settings.stop},
         scene_(folder / (workload.name + ".yaml")),
         tell_(tell) {
-    out_.mesh_spacing = settings.mesh_spacing.value_or(max_component(workload.bounds().size()) / 500);
+    const double usual = max_component(workload.bounds().size()) / 500;
+    out_.mesh_spacing = settings.mesh_spacing.value_or(std::max(usual, finest_mesh_spacing(workload.extent())));
   }
 
   /// Nothing when it was asked to stop.

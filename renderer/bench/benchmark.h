@@ -21,7 +21,8 @@ struct BenchSettings {
   int threads = 2;
   int rounds = 3;    ///< of which medians are taken
   int samples = 16;  ///< of the longer whole run
-  /// Grid of the meshed rival, scene units; 0 leaves it out. Default: a 500th of the workload's largest side.
+  /// Grid of the meshed rival, scene units; 0 leaves it out. Default: a 500th of the workload's largest side,
+  /// or finest_mesh_spacing() where that is more.
   std::optional<double> mesh_spacing = {};
   bool processes = true;  ///< whole processes too: this program, and POV-Ray where it is installed
   bool povray = true;
