@@ -9,6 +9,8 @@
 
 #include <unistd.h>
 
+#include "renderer/output/atomic_file.h"
+
 namespace marrow {
 namespace {
 
@@ -44,8 +46,9 @@ Status check_writable(const fs::path& path) {
     if (auto status = ask(path, W_OK, "be replaced"); !status || is_special(path)) return status;
   }
   // A symbolic link keeps its name; what it points to is replaced in the folder where that stands.
-  const fs::path folder = fs::weakly_canonical(fs::absolute(path), error).parent_path();
-  if (error) return failure("cannot be written: " + error.message(), path.string());
+  const auto file = file_behind(path);
+  if (!file) return file.why();
+  const fs::path folder = file->parent_path();
   if (!fs::is_directory(folder, error)) {
     return failure("cannot be written: there is no folder " + folder.string(), path.string());
   }

@@ -106,6 +106,18 @@ Status sync_folder(const fs::path& folder) {
 
 }  // namespace
 
+Result<fs::path> file_behind(const fs::path& path) {
+  constexpr int most_links = 40;  // as many as the system follows
+  fs::path file = path;
+  std::error_code error;
+  // Links that loop are left to fs::weakly_canonical, which has the system's reason.
+  for (int i = 0; i < most_links && fs::is_symlink(fs::symlink_status(file, error)); ++i)
+    file = file.parent_path() / fs::read_symlink(file, error);
+  file = fs::weakly_canonical(fs::absolute(file), error);
+  if (error) return failure("cannot be written: " + error.message(), path.string());
+  return file;
+}
+
 struct AtomicFile::Target {
   fs::path path;       // as it was named
   fs::path real;       // where links lead
@@ -145,10 +157,9 @@ Result<AtomicFile> AtomicFile::open(const fs::path& path) {
   target->path = path;
   if (fs::exists(status) && !fs::is_regular_file(status)) return AtomicFile(std::move(target));
 
-  // A link is followed, so that the link stays and its target is replaced
-  target->real = fs::is_symlink(fs::symlink_status(path, error)) ? fs::weakly_canonical(path, error) : path;
-  if (error && error != std::errc::no_such_file_or_directory)
-    return failure("cannot resolve: " + error.message(), path.string());
+  auto real = file_behind(path);
+  if (!real) return real.why();
+  target->real = std::move(*real);
   fs::path temporary;
   File file = create_temporary(target->folder(), temporary);
   if (!file.is_open()) return system_failure("cannot create a file in the folder", target->folder());

@@ -10,6 +10,10 @@
 
 namespace marrow {
 
+/// The file that `path` stands for: symbolic links are followed, one that leads to nothing yet, too. Error: links that
+/// lead back to themselves, names that are too long.
+Result<std::filesystem::path> file_behind(const std::filesystem::path& path);
+
 /// A file that takes its name once it is whole.
 /// The bytes go to a temporary file in the same folder, are synced and read back, and then take the name; the folder
 /// is synced last. A symbolic link is followed; an existing file keeps its permissions; a device or a pipe

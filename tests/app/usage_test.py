@@ -44,6 +44,8 @@ class UsageTest(ProgramTest):
         scene = self.write("point.yaml", POINT)
         (self.folder / "loop.png").symlink_to("loop.png")
         self.assertIn("Too many levels", self.expect(73, "render", scene, "-o", "loop.png").stderr)
+        (self.folder / "lost.png").symlink_to("missing/picture.png")
+        self.assertIn("there is no folder", self.expect(73, "render", scene, "-o", "lost.png").stderr)
         self.assertIn("name too long", self.expect(73, "render", scene, "-o", "x" * 300 + ".png").stderr)
 
     def test_a_slice_too_large_is_told_the_width_that_fits(self):

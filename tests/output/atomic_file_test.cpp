@@ -115,6 +115,20 @@ TEST(AtomicFile, KeepsPermissionsAndLinks) {
   EXPECT_EQ(fs::status(folder / "real").permissions(), fs::perms(0640));
 }
 
+TEST(AtomicFile, MakesWhatALinkLeadsTo) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "inner");
+  fs::create_symlink("inner/new", folder / "link");
+  fs::create_symlink("link", folder / "link to the link");
+  ASSERT_TRUE(write(folder / "link to the link", "x"));
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(read_text(folder / "inner/new"), "x");
+
+  fs::create_symlink("missing/new", folder / "to nowhere");
+  EXPECT_FALSE(write(folder / "to nowhere", "x"));
+  EXPECT_TRUE(fs::is_symlink(folder / "to nowhere"));
+}
+
 TEST(AtomicFile, TakesTheLongestNameOfTheFileSystem) {
   const TemporaryFolder folder;
   const std::string name(255, 'n');
