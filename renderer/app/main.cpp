@@ -30,8 +30,8 @@ int main(int argc, char** argv) {
   try {
     return static_cast<int>(after_flushing(obey(argc, argv)));
   } catch (const std::bad_alloc&) {
-    Diagnostic out = failure("there is not enough memory");
-    out.hint = "a smaller picture (--crop, film.size), fewer threads or a smaller scene take less";
+    const auto out = with_hint(failure("there is not enough memory"),
+                               "a smaller picture (--crop, film.size), fewer threads or a smaller scene take less");
     return static_cast<int>(report({out}, ExitCode::Internal));
   } catch (const std::exception& error) {
     return static_cast<int>(report({failure(std::string("internal error: ") + error.what())}, ExitCode::Internal));

@@ -260,11 +260,9 @@ Result<std::vector<WorkloadFigures>> run_benchmark(const std::vector<Workload>& 
                                                    const std::function<void(const std::string&)>& tell,
                                                    const std::function<void(const WorkloadFigures&)>& found) {
   const TemporaryFolder folder;
-  if (folder.path().empty()) {
-    Diagnostic none = failure("cannot make a folder for temporary files: " + folder.why_not());
-    none.hint = "TMPDIR names the folder in which it is made";
-    return none;
-  }
+  if (folder.path().empty())
+    return with_hint(failure("cannot make a folder for temporary files: " + folder.why_not()),
+                     "TMPDIR names the folder in which it is made");
   std::vector<WorkloadFigures> all;
   const auto measure = [&](const Workload& workload, const BenchSettings& how) -> Status {
     auto figures = Measurement(workload, how, folder.path(), tell).run();
