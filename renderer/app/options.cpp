@@ -302,15 +302,16 @@ std::variant<Command, ExitCode> parse_options(int argc, const char* const* argv)
       {add("bench", "Measures itself and its peers on common scenes", bench), [&] { return bench; }},
   };
 
+  const bool asks_for_help = argc > 1 && argv[1] == std::string_view("help");
+  const char* const word = argc > (asks_for_help ? 2 : 1) ? argv[asks_for_help ? 2 : 1] : "";
   const auto names = names_of(app.get_subcommands({}));
-  // As people know it from other programs
-  if (argc > 1 && argv[1] == std::string_view("help")) {
-    const bool is_known = argc > 2 && std::find(names.begin(), names.end(), argv[2]) != names.end();
-    say(is_known ? app.get_subcommand(argv[2])->help("marrow") : app.help());
+  const bool is_known = std::find(names.begin(), names.end(), word) != names.end();
+  if (*word != '\0' && *word != '-' && !is_known)
+    return usage_error(fmt::format("there is no command '{}'", word), suggest(word, names), "marrow");
+  if (asks_for_help) {
+    say(is_known ? app.get_subcommand(word)->help("marrow") : app.help());
     return ExitCode::Ok;
   }
-  if (argc > 1 && argv[1][0] != '-' && std::find(names.begin(), names.end(), argv[1]) == names.end())
-    return usage_error(fmt::format("there is no command '{}'", argv[1]), suggest(argv[1], names), "marrow");
   if (argc < 2) {
     complain(app.help());
     return ExitCode::Usage;

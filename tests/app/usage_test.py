@@ -33,6 +33,7 @@ class UsageTest(ProgramTest):
     def test_help_is_a_command_too(self):
         self.assertEqual(self.expect(0, "help").stdout, self.expect(0, "--help").stdout)
         self.assertEqual(self.expect(0, "help", "slice").stdout, self.expect(0, "slice", "--help").stdout)
+        self.assertIn("did you mean `slice`?", self.expect(2, "help", "slices").stderr)
 
     def test_numbers_are_told_what_they_should_be(self):
         for option in (["render", "x.yaml", "--spp", "1e3"], ["render", "x.yaml", "--spp", "0"],
