@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <set>
+#include <span>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "renderer/bench/dual_mesh.h"
 #include "renderer/bench/workload.h"
 #include "renderer/bench/workload_reader.h"
+#include "renderer/output/atomic_file.h"
 #include "renderer/scene/input_files.h"
 #include "renderer/scene/source_cache.h"
 
@@ -124,6 +126,17 @@ Status make_folder(const fs::path& folder) {
   return Done{};
 }
 
+// What stands there is replaced by whole files alone; the scene comes after what it needs.
+Status put_scene(const Workload& w, int film_size, const fs::path& folder) {
+  const SceneText text = scene_text(w, film_size, w.name + ".swc");
+  const auto put = [&](const char* ending, const std::string& of) {
+    return write_file_atomically(folder / (w.name + ending), std::as_bytes(std::span(of)));
+  };
+  if (!text.skeleton.empty())
+    if (auto status = put(".swc", text.skeleton); !status) return status;
+  return put(".yaml", text.scene);
+}
+
 ExitCode write_scenes(std::vector<Workload> workloads, const BenchCommand& command) {
   if (auto status = make_folder(*command.write_to); !status) return report(status.why(), ExitCode::CannotCreate);
   for (std::size_t count = 1000; count <= command.settings.largest_scaling; count *= 10)
@@ -131,10 +144,9 @@ ExitCode write_scenes(std::vector<Workload> workloads, const BenchCommand& comma
   const auto& interrupted = interruption_flag();
   for (const Workload& w : workloads) {
     if (interrupted) return complain("interrupted; the others are not written\n"), ExitCode::Interrupted;
-    const fs::path scene = *command.write_to / (w.name + ".yaml");
-    if (auto status = write_scene(w, command.settings.size, scene); !status)
+    if (auto status = put_scene(w, command.settings.size, *command.write_to); !status)
       return report(status.why(), ExitCode::CannotCreate);
-    complain(fmt::format("wrote {}\n", scene.string()));
+    complain(fmt::format("wrote {}\n", (*command.write_to / (w.name + ".yaml")).string()));
   }
   return ExitCode::Ok;
 }

@@ -58,8 +58,14 @@ Result<Workload> workload_named(std::string_view name);
 std::vector<std::string> workload_names();
 
 /// A scene file for Marrow: the workload as one blend (`alpha: contact`) of white diffuse material under its sun, with
-/// direct light only; placed ones as a union of uses of one blend. Large ones put their skeletons into an SWC file
-/// beside it.
+/// direct light only; placed ones as a union of uses of one blend. Large ones have their skeletons in an SWC file that
+/// stands beside it under the given name; of others `skeleton` is empty.
+struct SceneText {
+  std::string scene, skeleton;
+};
+SceneText scene_text(const Workload&, int film_size, const std::string& skeleton_name);
+
+/// Both, the SWC file with the scene's stem. When it fails there may be half of a file: for temporary files.
 Status write_scene(const Workload&, int film_size, const std::filesystem::path& scene);
 
 }  // namespace marrow

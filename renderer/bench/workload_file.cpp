@@ -4,7 +4,9 @@
 #include <fstream>
 #include <limits>
 #include <span>
+#include <sstream>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -94,14 +96,12 @@ Box3 placed(const Box3& box, const std::vector<Vec3d>& places) {
   return all;
 }
 
-Status cannot_write(const std::filesystem::path& path) {
-  return failure("cannot write " + path.string() + ": " + std::generic_category().message(errno));
-}
-
-Status written(std::ofstream& out, const std::filesystem::path& path) {
+Status write_text(const std::string& text, const std::filesystem::path& path) {
+  std::ofstream out(path);
+  out << text;
   out.close();
   if (out) return Done{};
-  return cannot_write(path);
+  return failure("cannot write " + path.string() + ": " + std::generic_category().message(errno));
 }
 
 }  // namespace
@@ -173,24 +173,27 @@ Result<Workload> workload_named(std::string_view name) {
   return unknown;
 }
 
-Status write_scene(const Workload& w, int film_size, const std::filesystem::path& scene) {
-  std::ofstream out(scene);
-  if (!out) return cannot_write(scene);
-  write_head(out, w, film_size);
-  write_blend_head(out, w);
+SceneText scene_text(const Workload& w, int film_size, const std::string& skeleton_name) {
+  std::ostringstream scene, skeleton;
+  write_head(scene, w, film_size);
+  write_blend_head(scene, w);
   if (w.segments.size() + w.points.size() < many) {
-    write_primitives(out, w);
-    write_places(out, w);
-    return written(out, scene);
+    write_primitives(scene, w);
+  } else {
+    fmt::print(scene, "          - skeleton: {{file: {}}}\n", skeleton_name);
+    write_swc(skeleton, w);
   }
-  auto data = scene;
-  data.replace_extension(".swc");
-  fmt::print(out, "          - skeleton: {{file: {}}}\n", data.filename().string());
-  if (auto status = written(out, scene); !status) return status;
-  std::ofstream skeleton(data);
-  if (!skeleton) return cannot_write(data);
-  write_swc(skeleton, w);
-  return written(skeleton, data);
+  write_places(scene, w);
+  return {std::move(scene).str(), std::move(skeleton).str()};
+}
+
+Status write_scene(const Workload& w, int film_size, const std::filesystem::path& scene) {
+  auto skeleton = scene;
+  skeleton.replace_extension(".swc");
+  const SceneText text = scene_text(w, film_size, skeleton.filename().string());
+  if (!text.skeleton.empty())
+    if (auto status = write_text(text.skeleton, skeleton); !status) return status;
+  return write_text(text.scene, scene);
 }
 
 }  // namespace marrow

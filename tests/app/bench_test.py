@@ -1,5 +1,7 @@
 """`marrow bench` runs on tiny pictures, and says what it measured."""
 import json
+import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -171,7 +173,19 @@ class BenchTest(ProgramTest):
         error = self.expect(73, "bench", "w3", *TINIEST, TMPDIR=str(self.folder / "nowhere")).stderr
         self.assertRegex(error, "temporary files: .+\\n.*TMPDIR")
         (self.folder / "w3.yaml").mkdir()
-        self.assertIn("w3.yaml: Is a directory", self.expect(73, "bench", "w3", "--write", ".").stderr)
+        self.assertIn("w3.yaml: error: cannot write: is a folder", self.expect(73, "bench", "w3", "--write", ".").stderr)
+
+    def test_a_full_disk_leaves_what_was_there(self):
+        scene = self.folder / "w3.yaml"
+        scene.write_text("old")
+        # As on a disk with room for 1000 bytes; Python ignores the signal of such a limit, and so does its child.
+        done = subprocess.run([PROGRAM, "bench", "w3", "--write", "."], cwd=self.folder, capture_output=True, text=True,
+                              check=False, restore_signals=False,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))
+        self.assertEqual(done.returncode, 73)
+        self.assertIn("File too large", done.stderr)
+        self.assertEqual(scene.read_text(), "old")
+        self.assertEqual(os.listdir(self.folder), ["w3.yaml"])
 
     def test_a_skeleton_of_which_no_scene_can_be_made(self):
         self.write("thin.txt", "seg 0 0 0 1e-300  1 0 0 1e-300\n")

@@ -116,6 +116,10 @@ TEST(Workloads, BecomeScenes) {
   const std::string swc = text_of("many.swc");
   EXPECT_EQ(std::count(swc.begin(), swc.end(), '\n'), 21000);  // 1000 strands of 20 segments
   EXPECT_FALSE(write_scene(balls(), 64, folder / "no" / "such.yaml"));
+
+  Workload placed = strands(20000);
+  placed.places = {{1, 2, 3}};
+  EXPECT_NE(scene_text(placed, 64, "body.swc").scene.find("translate: [1, 2, 3]"), std::string::npos);
   std::filesystem::remove_all(folder);
 }
 
