@@ -168,9 +168,8 @@ std::vector<std::string> workload_names() {
 Result<Workload> workload_named(std::string_view name) {
   for (const Named& n : table)
     if (name == n.name) return n.make();
-  Diagnostic unknown = failure("there is no workload `" + std::string(name) + "`");
-  unknown.hint = fmt::format("there are {}, and files of skeletons", fmt::join(workload_names(), ", "));
-  return unknown;
+  return with_hint(failure("there is no workload `" + std::string(name) + "`"),
+                   fmt::format("there are {}, and files of skeletons", fmt::join(workload_names(), ", ")));
 }
 
 SceneText scene_text(const Workload& w, int film_size, const std::string& skeleton_name) {
