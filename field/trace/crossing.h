@@ -1,5 +1,4 @@
-// The first crossing of a surface along a piece of a ray, found with enclosures [interval Newton isolation: Moore
-// 1966].
+// The first crossing of a surface along a piece of a ray, found with enclosures as tree_tracer.h tells [Moore 1966].
 #pragma once
 
 #include <cstdint>

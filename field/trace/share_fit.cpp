@@ -83,11 +83,6 @@ struct ShareFit {
   }
 };
 
-const ShareFit& share_fit() {
-  static const ShareFit made;
-  return made;
-}
-
 using Data = ShareFit::Data;
 
 // Of this thread, for as many strands as any level had.
@@ -115,13 +110,13 @@ Data data_of(const BlockKernels& kernels, int degree, const FieldLevel& level, c
 
 double fit_share(const BlockKernels& kernels, int degree, const FieldLevel& strands, SharePatch& patch) {
   const Data data = data_of(kernels, degree, strands, patch);
-  const ShareFit& fitted = share_fit();
+  static const ShareFit fit;
   ShareFit::Row sum{};
   for (std::size_t i = 0; i < data_count; ++i)
-    for (std::size_t m = 0; m < SharePatch::coefficients; ++m) sum[m] += data[i] * fitted.coefficients[i][m];
+    for (std::size_t m = 0; m < SharePatch::coefficients; ++m) sum[m] += data[i] * fit.coefficients[i][m];
   Data residual = data;
   for (std::size_t m = 0; m < SharePatch::coefficients; ++m)
-    for (std::size_t i = 0; i < data_count; ++i) residual[i] -= fitted.basis[m][i] * sum[m];
+    for (std::size_t i = 0; i < data_count; ++i) residual[i] -= fit.basis[m][i] * sum[m];
   double largest = 0;
   for (const double r : residual) largest = std::max(largest, std::fabs(r));
   for (std::size_t m = 0; m < SharePatch::coefficients; ++m) patch.coefficient[m] = static_cast<float>(sum[m]);

@@ -303,7 +303,8 @@ std::variant<Command, ExitCode> parse_options(int argc, const char* const* argv)
   };
 
   const bool asks_for_help = argc > 1 && argv[1] == std::string_view("help");
-  const char* const word = argc > (asks_for_help ? 2 : 1) ? argv[asks_for_help ? 2 : 1] : "";
+  const int place = asks_for_help ? 2 : 1;  // of the command
+  const char* const word = argc > place ? argv[place] : "";
   const auto names = names_of(app.get_subcommands({}));
   const bool is_known = std::find(names.begin(), names.end(), word) != names.end();
   if (*word != '\0' && *word != '-' && !is_known)

@@ -97,9 +97,8 @@ Diagnostic several_fields(const std::vector<const FieldObject*>& fields, const S
   std::vector<std::string_view> names;
   for (const FieldObject* field : fields)
     if (names.size() < most) names.push_back(scene.objects[field->object.index()].name);
-  Diagnostic several = failure("the scene has several fields; choose one by --object");
-  several.hint = fmt::format("there are {}{}", fmt::join(names, ", "), fields.size() > most ? ", …" : "");
-  return several;
+  return with_hint(failure("the scene has several fields; choose one by --object"),
+                   fmt::format("there are {}{}", fmt::join(names, ", "), fields.size() > most ? ", …" : ""));
 }
 
 Result<std::vector<Vec3d>> points_of(const std::filesystem::path& path, SourceCache& sources) {

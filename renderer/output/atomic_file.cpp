@@ -113,7 +113,8 @@ Result<fs::path> file_behind(const fs::path& path) {
   // Links that loop are left to fs::weakly_canonical, which has the system's reason.
   for (int i = 0; i < most_links && fs::is_symlink(fs::symlink_status(file, error)); ++i)
     file = file.parent_path() / fs::read_symlink(file, error);
-  file = fs::weakly_canonical(fs::absolute(file), error);
+  file = fs::absolute(file, error);
+  if (!error) file = fs::weakly_canonical(file, error);
   if (error) return failure("cannot be written: " + error.message(), path.string());
   return file;
 }

@@ -22,9 +22,7 @@ std::size_t index(int axis) { return static_cast<std::size_t>(axis); }
 // A quarter of the object's size on each side; a flat object gets a quarter of its longest side instead.
 Result<SliceWindow> default_window(const Box3& bounds, int axis) {
   if (bounds.empty() || !is_finite(bounds.size())) {
-    Diagnostic d = failure("the object has no bounds to fit the picture to");
-    d.hint = "give a window";
-    return d;
+    return with_hint(failure("the object has no bounds to fit the picture to"), "give a window");
   }
   const auto [u, v] = slice_axes(axis);
   const double longest = max_component(bounds.size());
@@ -47,10 +45,9 @@ Result<SliceImage> blank(double iso, const Box3& bounds, const SliceRequest& req
     return failure("the window of the slice is empty or not finite");
   const double height = std::max(1.0, std::floor(request.width * aspect + 0.5));
   if (request.width < 1 || request.width * height > most_pixels) {
-    Diagnostic d = failure(fmt::format("{} x {:.0f} pixels: a slice has from 1 to 2^26", request.width, height));
-    if (const double widest = std::floor(std::sqrt(most_pixels / aspect)); widest >= 1)
-      d.hint = fmt::format("a width of {:.0f} fits this window", std::min(widest, most_pixels));
-    return d;
+    const double widest = std::min(std::floor(std::sqrt(most_pixels / aspect)), most_pixels);
+    return with_hint(failure(fmt::format("{} x {:.0f} pixels: a slice has from 1 to 2^26", request.width, height)),
+                     widest >= 1 ? fmt::format("a width of {:.0f} fits this window", widest) : "");
   }
   SliceImage image{.axis = request.axis,
                    .offset = request.offset,
@@ -102,9 +99,7 @@ Result<std::pair<int, double>> parse_plane(const std::string& text) {
     if (error == std::errc{} && end == last && std::isfinite(offset))
       return std::pair(static_cast<int>(axis - axis_names.begin()), offset);
   }
-  Diagnostic d = failure("\"" + text + "\" is not an axis plane");
-  d.hint = "for example z=0 or x=-1.5";
-  return d;
+  return with_hint(failure("\"" + text + "\" is not an axis plane"), "for example z=0 or x=-1.5");
 }
 
 std::array<int, 2> slice_axes(int axis) {

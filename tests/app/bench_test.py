@@ -1,7 +1,6 @@
 """`marrow bench` runs on tiny pictures, and says what it measured."""
 import json
 import os
-import resource
 import shutil
 import signal
 import subprocess
@@ -179,9 +178,8 @@ class BenchTest(ProgramTest):
         scene = self.folder / "w3.yaml"
         scene.write_text("old")
         # As on a disk with room for 1000 bytes; Python ignores the signal of such a limit, and so does its child.
-        done = subprocess.run([PROGRAM, "bench", "w3", "--write", "."], cwd=self.folder, capture_output=True, text=True,
-                              check=False, restore_signals=False,
-                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))
+        done = subprocess.run(["prlimit", "--fsize=1000", PROGRAM, "bench", "w3", "--write", "."], cwd=self.folder,
+                              capture_output=True, text=True, check=False, restore_signals=False)
         self.assertEqual(done.returncode, 73)
         self.assertIn("File too large", done.stderr)
         self.assertEqual(scene.read_text(), "old")
