@@ -28,11 +28,8 @@ inline Correction correction_for(const BlendField& field) {
   return Correction(field.degree, alpha, field.cavity, field.projection);
 }
 
-inline IsoCurve iso_curve_for(const BlendField& field, const Correction& correction,
-                              const std::optional<AngleRange>& range) {
-  if (!range) return IsoCurve(correction, correction.alpha());
-  const auto given_by = field.alpha_per_skeleton ? IsoCurve::Range::Skeletons : IsoCurve::Range::Directions;
-  return IsoCurve(correction, range->least, range->most, given_by);
+inline IsoCurve iso_curve_for(const Correction& correction, const std::optional<AngleRange>& range) {
+  return range ? IsoCurve(correction, range->least, range->most) : IsoCurve(correction, correction.alpha());
 }
 
 struct BlendTracer::State {
@@ -55,7 +52,7 @@ struct BlendTracer::State {
       : field(std::move(f)),
         correction(correction_for(field)),
         range(angle_range(field)),
-        iso(iso_curve_for(field, correction, range)),
+        iso(iso_curve_for(correction, range)),
         cutter(field.degree, iso.critical_field()),
         sources(cutter.cut(field), field.degree),
         angle_sources(

@@ -104,8 +104,6 @@ Block::Block(const Context& context, const CellTree::Cell& cell)
             .owner = this,
             .degree = context.degree,
             .iso = context.iso.view(),
-            .rows = context.iso.views().data(),
-            .row_count = static_cast<int>(context.iso.views().size()),
             .tables = context.iso.tables()} {
   if (context.strands != nullptr) {
     patches_ = std::make_unique<const SharePatches>();

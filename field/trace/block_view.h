@@ -85,8 +85,6 @@ struct BlockView {
   const void* owner = nullptr;
   int degree = 4;
   IsoCurve::View iso;
-  const IsoCurve::View* rows = nullptr;  ///< where alpha varies: IsoCurve::views()
-  int row_count = 0;
   AngleTables tables;  ///< where alpha varies
   /// Where directions give alpha, else null: the octants of the block, and what makes the part that holds a slot.
   const SharePart* parts = nullptr;

@@ -103,28 +103,10 @@ double IsoTable::upper(double u) const {
 
 double IsoTable::margin(double x, double y) const { return lower(u_of(x, y)) - v_of(x, y); }
 
-IsoTable::Margins IsoTable::margins(double x, double y) const {
-  const double at = place(u_of(x, y)), v = v_of(x, y);
-  if (is_beyond(at)) return {beyond(value_) - v, beyond(lower_) - v};
-  return {on_lines(value_, at) - v, on_lines(lower_, at) - v};
-}
-
-double IsoTable::nominal(double x, double y) const {
-  const double at = place(u_of(x, y));
-  return (is_beyond(at) ? beyond(value_) : on_lines(value_, at)) - v_of(x, y);
-}
-
 IsoTable::Point IsoTable::point(int entry) const {
   const TurnedLine line{u_begin_ + entry * step_, sin_, cos_};
   const double v = value_[static_cast<std::size_t>(entry)];
   return {line.x(v), line.y(v)};
-}
-
-void IsoTable::lower_around(const Point& p, double by) {
-  const double at = place(u_of(p.x, p.y));
-  const auto last = value_.size() - 1, i = std::min(last, static_cast<std::size_t>(at));
-  for (std::size_t k = i > 2 ? i - 2 : 0; k <= std::min(last, i + 3); ++k)
-    lower_[k] = std::min(lower_[k], static_cast<float>(value_[k] - by));
 }
 
 bool IsoTable::outside(double x_low, double x_high, double y_high) const {

@@ -23,7 +23,7 @@ class IsoTable {
   /// 4e-5.
   /// `alpha` in radians, here and below.
   IsoTable(const Correction&, double alpha);
-  /// One of a range of angles, turned as smoothly as the angle changes: at least `entry_count` entries.
+  /// The same in some `entry_count` entries.
   IsoTable(const Correction&, double alpha, int entry_count);
 
   /// Piecewise linear over u in [u_begin, u_begin + (size - 1) / inverse_step]; entries as float, sorted by u.
@@ -48,21 +48,12 @@ class IsoTable {
   bool inside(double x_low, double y_low) const;
   /// V_lower(u) - v: positive only where C < 1 for all smaller x, y (alpha >= 0), or at x, y itself.
   double margin(double x, double y) const;
-  /// The same by V itself: 0 on the curve.
-  double nominal(double x, double y) const;
-  /// Both at once, but minus infinity beyond an end of the table at the axis x = 0.
-  struct Margins {
-    double nominal, lower;
-  };
-  Margins margins(double x, double y) const;
   struct Point {
     double x, y;
   };
   /// On the curve, at an entry of the table.
   Point point(int entry) const;
   int size() const { return static_cast<int>(value_.size()); }
-  /// Moves V_lower to at least `by` below V around a point.
-  void lower_around(const Point&, double by);
   /// critical_field_of() of the correction.
   double critical_field() const { return critical_; }
   /// Whether C falls in x somewhere (alpha < 0).

@@ -128,6 +128,20 @@ struct AnglePlace {
     const F of_place = difference() * (from_begin * inverse_growth - begin_growth * inverse_step);
     return (of_entries + select(at > 0.0F, of_place, F{})) * static_cast<float>(tables.count);
   }
+  // Tells a sample of f and |G| by the curve, where the share has a slope along the ray. Returns how the residual grows
+  // with the share.
+  template <class Sample>
+  F tell(const AngleTables& tables, F share_slope, F dy, Sample& p) const {
+    const F along = slope(), of_share = growth(tables);
+    p.curve = value();
+    p.v = v;
+    p.x_weight = sine + along * cosine;
+    p.y_weight = cosine - along * sine;
+    p.v_slope = p.s.df * sine + dy * cosine;
+    p.slope = of_share * share_slope - p.x_weight * p.s.df - p.y_weight * dy;
+    p.nominal = p.curve - p.v;
+    return of_share;
+  }
   // Of the curve itself, from its slopes at the entries; level beyond the last one.
   F exact_slope(const AngleTables& tables) const {
     const EightNumbers<F> slopes = entries_at(tables.slopes, entry);

@@ -183,5 +183,6 @@ inline Root single_root(const BlockView& block, const LocalRay& ray, const Block
 
 Root first_root(const BlockView& block, const LocalRay& ray, const BlockKernels::Query& query) {
   if (block.parts != nullptr) return single_root<Angle::Patched>(block, ray, query);
-  return block.row_count > 1 ? single_root<Angle::Mean>(block, ray, query) : single_root<Angle::One>(block, ray, query);
+  if (block.tables.count > 0) return single_root<Angle::Mean>(block, ray, query);
+  return single_root<Angle::One>(block, ray, query);
 }

@@ -14,15 +14,7 @@ struct PatchedAngle {
   void judge(Sample& p, F y, F dy) const {
     p.share = run.at(p.t);
     const AnglePlace<F> place(block.tables, p.share.c[0], p.s.f, y);
-    const F slope = place.slope(), growth = place.growth(block.tables);
-    p.curve = place.value();
-    p.v = place.v;
-    p.x_weight = place.sine + slope * place.cosine;
-    p.y_weight = place.cosine - slope * place.sine;
-    p.v_slope = p.s.df * place.sine + dy * place.cosine;
-    p.slope = growth * p.share.c[1] - p.x_weight * p.s.df - p.y_weight * dy;
-    p.nominal = p.curve - p.v;
-    p.residual_bend = abs_of(growth * p.share.c[2]);
+    p.residual_bend = abs_of(place.tell(block.tables, p.share.c[1], dy, p) * p.share.c[2]);
     p.s.f += level.f_error();
     p.sure = !Mask{};
     p.residual = margin_within(p, p.s.f, p.y, F{}, !Mask{});

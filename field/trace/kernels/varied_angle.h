@@ -14,22 +14,18 @@ struct VariedAngle {
 
   // As Sampler::judge(), with the angle of the place.
   void judge(Sample& p, const OnRay<float> (&at)[3], float y, float dy) const {
-    const float low = nominal_margin_at(table_of_end(block, false), p.s.f, y),
-                high = nominal_margin_at(table_of_end(block, true), p.s.f, y);
+    const AnglePlace<float> least(block.tables, 0, p.s.f, y), most(block.tables, 1, p.s.f, y);
+    const float low = least.nominal_margin(), high = most.nominal_margin();
     p.summed = {};
     if (needs_share(low, high)) p.summed = share_at(p, at);
     const SummedShare& here = p.summed;
-    const IsoValue iso =
-        known(p) ? IsoValue(block, here.share + here.slope * (p.t - here.t), here.slope, p.s.f, y, p.s.df, dy)
-                 : IsoValue(table_of_end(block, low > high), p.s.f, y, p.s.df, dy);
-    p.v = iso.v;
-    p.curve = iso.curve;
-    p.nominal = iso.curve - iso.v;
-    p.x_weight = iso.x_weight;
-    p.y_weight = iso.y_weight;
-    p.slope = iso.slope;
-    p.v_slope = iso.v_slope;
-    p.residual_bend = known(p) ? abs_of(iso.share_weight) * here.bend : 0;
+    p.residual_bend = 0;
+    if (known(p)) {
+      const AnglePlace<float> place(block.tables, here.share + here.slope * (p.t - here.t), p.s.f, y);
+      p.residual_bend = abs_of(place.tell(block.tables, here.slope, dy, p)) * here.bend;
+    } else {
+      (low > high ? most : least).tell(block.tables, 0, dy, p);
+    }
     p.residual_drop = max_of(0, p.nominal - min_of(low, high));
     p.s.f += level.f_error;
     p.sure = true;
@@ -81,6 +77,7 @@ struct VariedAngle {
   // there, fields are at most (1 - q)^-n times what they are there, their second derivatives (1 - q)^-(n + 2), and of
   // the quotient of such a change and a sum of f at most (1 - q)^-(6 n + 2) remains.
   ShareRange shares_until(const Sample& p, float h) const {
+    if (!known(p)) return {0, 1};
     const SummedShare& from = p.summed;
     const float begin = p.t - from.t, end = begin + h, longest = max_of(abs_of(begin), abs_of(end));
     const float q = longest / from.distance;
@@ -92,28 +89,22 @@ struct VariedAngle {
             from.share + max_of(0, max_of(a, b) + bend) * growth + error};
   }
 
-  // Marcher::margin(), nominal_margin_at() and nominally_inside() for all shares on [t, t + h]: C is largest, and
-  // least, at the ends of a range.
+  // Where the field is largest of all shares on [t, t + h], or least.
+  AnglePlace<float> place_within(const Sample& p, float x, float y, float h, bool largest) const {
+    const ShareRange shares = shares_until(p, h);
+    const bool upper = right_of_reference(x, y, block.degree) == largest;
+    return AnglePlace<float>(block.tables, upper ? shares.high : shares.low, x, y);
+  }
+
+  // Marcher::margin(), nominal_margin_at() and nominally_inside() for all shares on [t, t + h].
   float margin_within(const Sample& p, float x, float y, float h, bool) const {
     if (!p.sure) return nominal_within(p, x, y, h);
-    x *= p.raise;
-    y *= p.raise;
-    if (!known(p))
-      return min_of(margin_at(table_of_end(block, false), x, y), margin_at(table_of_end(block, true), x, y));
-    const ShareRange shares = shares_until(p, h);
-    return min_of(margin_at(block, x, y, shares.low), margin_at(block, x, y, shares.high));
+    return place_within(p, x * p.raise, y * p.raise, h, true).margin();
   }
   float nominal_within(const Sample& p, float x, float y, float h) const {
-    if (!known(p))
-      return min_of(nominal_margin_at(table_of_end(block, false), x, y),
-                    nominal_margin_at(table_of_end(block, true), x, y));
-    const ShareRange shares = shares_until(p, h);
-    return min_of(nominal_margin_at(block, x, y, shares.low), nominal_margin_at(block, x, y, shares.high));
+    return place_within(p, x, y, h, true).nominal_margin();
   }
   bool inside_within(const Sample& p, float x, float y, float h) const {
-    if (!known(p))
-      return nominally_inside(table_of_end(block, false), x, y) && nominally_inside(table_of_end(block, true), x, y);
-    const ShareRange shares = shares_until(p, h);
-    return nominally_inside(block, x, y, shares.low) && nominally_inside(block, x, y, shares.high);
+    return x > block.iso.critical || place_within(p, x, y, h, false).straight_margin() < 0;
   }
 };
