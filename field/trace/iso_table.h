@@ -23,7 +23,7 @@ class IsoTable {
   /// 4e-5.
   /// `alpha` in radians, here and below.
   IsoTable(const Correction&, double alpha);
-  /// The same in some `entry_count` entries.
+  /// An end of a range of angles, turned by alpha itself: some `entry_count` entries, so coarser than the one above.
   IsoTable(const Correction&, double alpha, int entry_count);
 
   /// Piecewise linear over u in [u_begin, u_begin + (size - 1) / inverse_step]; entries as float, sorted by u.
