@@ -199,7 +199,9 @@ struct FarSums {
   float f[most_far_moments], potential[most_far_moments];  ///< as far_moments() finds them, in units of the cube
 };
 
-inline constexpr int floats_per_strand_group = 7 * lanes;  ///< xyz, weight, direction xyz
+/// xyz, weight, direction xyz of nodes, two for each piece, in lanes that follow each other; of their pieces the
+/// length, and the difference of the radii at its ends over the larger one.
+inline constexpr int floats_per_strand_group = 9 * lanes;
 
 /// Where a quadratic is fitted in a cube: its centre, near its faces, near its corners.
 inline constexpr int strand_places = 15;
@@ -223,13 +225,20 @@ inline constexpr float strand_place[strand_places][3] = {{0, 0, 0},
 struct StrandQuery {
   const float* groups;
   int count, exponent;
-  const unsigned short* left_out;  ///< a bit for each lane of each group; null: none
   float center[3], half;
+  float largest_ratio;  ///< of the radius of the cube to the distance of what is far
+  /// Room for a bit for each lane of each group: of the nodes of pieces that are not far, or that a quadratic or their
+  /// two nodes would not tell to within `allowed` in f. They do not count. Null: all do.
+  unsigned short* near;
+  float allowed;
+};
+struct StrandInMiddle {
+  float field;
+  float error;  ///< of f as a quadratic, an estimate: of the nodes that count
+  float ratio;  ///< the largest radius of the cube over the distance of a node that counts
 };
 struct StrandSamples {
   float sums[strand_places][4];  ///< f and sum f_s u_s
-  float error;                   ///< sum f_s q^3, q the radius of the cube over the distance
-  float ratio;                   ///< the largest q
 };
 
 struct BlockKernels {
@@ -273,6 +282,8 @@ struct BlockKernels {
   /// `memory`: floats_per_strand for each strand, 64-byte aligned.
   void (*strand_shares)(const FieldLevel&, int degree, const float (&center)[3], float half, float* memory,
                         StrandShares&);
+  void (*strand_in_middle)(const StrandQuery&, StrandInMiddle&);
+  /// With `near`: as strand_in_middle() found them.
   void (*strand_samples)(const StrandQuery&, StrandSamples&);
   /// Adds a strand to tensor_floats sums at each of strand_place, not where its f is infinite.
   void (*add_strand)(const StrandSamples&, float* tensors);

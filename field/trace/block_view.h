@@ -14,17 +14,15 @@ inline constexpr int lanes = 16;
 inline constexpr int floats_per_group = 5 * lanes;  ///< x[16] y[16] z[16] share[16] radius[16]
 inline constexpr float unused_place = 1e3F;  ///< x, y and z of lanes without a source, which have share and radius 0
 
-/// Of a symmetric tensor of degree 8, x^i y^j z^(8-i-j), j faster: binom(8 + 2, 2). As many axes stand for it
-/// (strand_axes.h).
-inline constexpr int tensor_components = (8 + 2) * (8 + 1) / 2, axis_count = tensor_components;
+/// Of a symmetric tensor of degree 8, x^i y^j z^(8-i-j), j faster: binom(8 + 2, 2).
+inline constexpr int tensor_components = (8 + 2) * (8 + 1) / 2;
 /// What a tensor sum f u^8 over strands goes with, behind its components: sums of f, f^2, and f^2 of those that have a
 /// direction.
 enum TensorSum { sum_of_f = tensor_components, sum_of_squares, sum_of_directed_squares };
 inline constexpr int tensor_floats = sum_of_directed_squares + 1;
 static_assert(tensor_floats % lanes == 0);  // kernels go through them in whole registers
-/// What stands there behind the weights of axes, in StrandLevel::far: sum f, and over pairs, each counted twice,
-/// f_i f_j (u_i . u_j)^8 and f_i f_j.
-enum FarSum { far_sum = axis_count, far_turned_pairs, far_pairs };
+/// What stands there in StrandLevel::far: sum f, and over pairs, each counted twice, f_i f_j (u_i . u_j)^8 and f_i f_j.
+enum FarSum { far_sum = tensor_components, far_turned_pairs, far_pairs };
 static_assert(static_cast<int>(far_pairs) < tensor_floats);
 inline constexpr int most_strands = 512;        ///< that a block lists
 inline constexpr int quadratic_monomials = 10;  ///< 1 x y z xx yy zz xy xz yz
@@ -35,10 +33,9 @@ struct StrandLevel {
   const int* groups = nullptr;        ///< curve groups of each strand, which follow each other
   const float* rest = nullptr;  ///< for each strand and monomial (f, sum f_s u_s) of its pieces that are not listed
   int count = 0;
-  /// Strands that are not listed, for each monomial tensor_floats: weights w of axes v with
-  /// sum w (v . u)^8 = sum f_i (u_i . u)^8 for every u; then far_sum, far_turned_pairs and far_pairs.
+  /// Strands that are not listed, for each monomial tensor_floats: sum f u^8; then far_sum, far_turned_pairs and
+  /// far_pairs.
   const float* far = nullptr;
-  const float* axes = nullptr;  ///< x[48] y[48] z[48], the last three 0
 };
 
 /// One representation of the field in a block: f = sum w d^-m + polynomial, G = grad_S f likewise with w tau. Sources

@@ -6,20 +6,14 @@
 #include <utility>
 
 #include "field/trace/source_emitter.h"
-#include "field/trace/strand_axes.h"
 
 namespace marrow {
 
 StrandedLevel make_stranded_level(const Block::Context& context, const CellTree::Cell& cell) {
   const Strands& strands = *context.strands;
-  std::vector<std::uint32_t> near;
-  for (const SourceRef ref : context.tree.surroundings(cell).near) near.push_back(ref.index());
-  std::sort(near.begin(), near.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::pair(strands.strand_of(a), a) < std::pair(strands.strand_of(b), b);
-  });
   StrandedLevel out{.curves = {},
                     .points = {},
-                    .seen = strands.around(*cell.tile, cell.center, cell.half, near),
+                    .seen = strands.around(*cell.tile, cell.center, cell.half),
                     .groups = {},
                     .directions = {}};
   SourceEmitter emitter(context.cutter, context.fine, cell.center, cell.half);
@@ -33,16 +27,13 @@ StrandedLevel make_stranded_level(const Block::Context& context, const CellTree:
         out.directions[static_cast<std::size_t>(lanes_told / lanes * 3 * lanes + lanes_told % lanes) + k * lanes] =
             static_cast<float>(u[k]);
   };
-  std::size_t at = 0;
-  for (const std::uint32_t strand : out.seen.view.near) {
-    while (at < near.size() && strands.strand_of(near[at]) < strand) ++at;
+  for (const NearStrand& strand : out.seen.near) {
     const int before = emitter.curves.group_count();
-    for (; at < near.size() && strands.strand_of(near[at]) == strand; ++at) emit(near[at]);
+    for (const std::uint32_t piece : strand.listed) emit(piece);
     emitter.curves.end_group();
     lanes_told = emitter.curves.count();
     out.groups.push_back(emitter.curves.group_count() - before);
   }
-  for (const std::uint32_t point : out.seen.points) emitter.emit(context.pieces[point]);
   out.curves = std::move(emitter.curves);
   out.points = std::move(emitter.points);
   return out;
@@ -64,15 +55,11 @@ BlockLevel write_stranded_level(const StrandedLevel& from, const Allocate& alloc
   std::fill_n(rest, quadratic_monomials * row, 0.0F);
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t m = 0; m < quadratic_monomials; ++m)
-      for (std::size_t k = 0; k < 4; ++k) rest[m * row + k * stride + i] = seen.rest[i].sums[4 * m + k];
+      for (std::size_t k = 0; k < 4; ++k) rest[m * row + k * stride + i] = seen.near[i].rest[4 * m + k];
   auto* const groups = reinterpret_cast<int*>(rest + quadratic_monomials * row);
   std::uninitialized_copy(from.groups.begin(), from.groups.end(), groups);
-  auto* const reference = new (rest + quadratic_monomials * row + stride) StrandLevel{.directions = directions,
-                                                                                      .groups = groups,
-                                                                                      .rest = rest,
-                                                                                      .count = static_cast<int>(count),
-                                                                                      .far = far,
-                                                                                      .axes = strand_axes()};
+  auto* const reference = new (rest + quadratic_monomials * row + stride) StrandLevel{
+      .directions = directions, .groups = groups, .rest = rest, .count = static_cast<int>(count), .far = far};
   BlockLevel out;
   out.level = write_sources(from.curves, from.points, at);
   out.angle_error = seen.view.error;

@@ -50,7 +50,7 @@
 #include "field/trace/kernels/split.h"
 // clang-format on
 
-constexpr BlockKernels all_kernels{first_root,     enter_cell,         roots_between,  point_fields,
-                                   surface_starts, place_margins,      walk,           write_nodes,
-                                   cube_bounds,    octant_cube_bounds, far_moments,    far_split,
-                                   octant_bounds,  strand_shares,      strand_samples, add_strand};
+constexpr BlockKernels all_kernels{first_root,     enter_cell, roots_between, point_fields,  surface_starts,
+                                   place_margins,  walk,       write_nodes,   cube_bounds,   octant_cube_bounds,
+                                   far_moments,    far_split,  octant_bounds, strand_shares, strand_in_middle,
+                                   strand_samples, add_strand};

@@ -1,46 +1,98 @@
 // One strand as a cube sees it, and its share of a tensor of many. Part of block_kernels_<set>.cpp.
 
+// What is left of the sums over nodes where pieces count as quadratics: binom(n + 2, 3) q^3 of each, q the radius of
+// the cube over its distance [tracing.md B5]; and where they count by two nodes: L^4 / 4320 times the fourth derivative
+// along a piece of length L [Abramowitz and Stegun 25.4.30], of which d^-n gives n (n + 1) (n + 2) (n + 3) d^-4, and a
+// radius that changes some more.
+struct StrandErrors {
+  float radius, quadratic, rule;
+
+  explicit StrandErrors(const StrandQuery& query) : radius(1.7321F * query.half) {
+    const auto n = static_cast<float>(query.exponent);
+    quadratic = n * (n + 1) * (n + 2) / 6;
+    rule = 2 * n * (n + 1) * (n + 2) * (n + 3) / 4320;  // of both nodes
+  }
+  V16 of_quadratic(V16 w, V16 ratio) const { return quadratic * w * (ratio * ratio * ratio); }
+  V16 of_rule(V16 w, V16 length, V16 taper, V16 distance) const {
+    const V16 spread = length / larger(distance - radius, splat(1e-30F)) + taper, square = spread * spread;
+    return rule * w * (square * square);
+  }
+};
+
+// The nodes of a group in the middle of a cube; unused lanes have no field.
+struct NodesInMiddle {
+  V16 weight, distance, w;
+  NodesInMiddle(const float* group, const StrandQuery& query) : weight(load(group + 48)) {
+    const V16 dx = query.center[0] - load(group), dy = query.center[1] - load(group + 16),
+              dz = query.center[2] - load(group + 32), d2 = dx * dx + dy * dy + dz * dz;
+    distance = root_of(d2);
+    w = select(weight > 0.0F, weight * inverse_power<0>(1.0F / d2, query.exponent), V16{});
+  }
+};
+
+// The lanes of a group whose pieces count one by one.
+inline unsigned near_nodes(const NodesInMiddle& at, const float* group, const StrandQuery& query,
+                           const StrandErrors& errors) {
+  const V16 ratio = errors.radius / at.distance;
+  const auto far = (ratio < query.largest_ratio) & (errors.of_quadratic(at.w, ratio) < query.allowed) &
+                   (errors.of_rule(at.w, load(group + 112), load(group + 128), at.distance) < query.allowed);
+  const unsigned near = ~lane_bits(far) & lane_bits(at.weight > 0.0F);
+  return near | (near & 0x5555U) << 1 | (near >> 1 & 0x5555U);
+}
+
 // 0 for those that are left out.
-inline V16 weights_of(const float* weights, unsigned left_out) {
-  if (left_out == 0) return load(weights);
+inline V16 without(unsigned left_out, V16 v) {
+  if (left_out == 0) return v;
   alignas(64) float left[lanes];
-  for (int i = 0; i < lanes; ++i) left[i] = left_out >> i & 1 ? 0.0F : weights[i];
+  __builtin_memcpy(left, &v, sizeof v);
+  for (int i = 0; i < lanes; ++i)
+    if (left_out >> i & 1) left[i] = 0;
   return load(left);
 }
 
-// Of one strand, at the places where a cube is probed: f and sum f_s u_s; how much a quadratic may be off.
+// f and sum f_s u_s at one place.
+inline void sum_nodes_at(const float (&p)[3], const StrandQuery& query, float (&sums)[4]) {
+  V16 sum[12] = {};
+  const float* group = query.groups;
+  for (int k = 0; k < query.count; ++k, group += floats_per_strand_group) {
+    const V16 dx = p[0] - load(group), dy = p[1] - load(group + 16), dz = p[2] - load(group + 32);
+    const V16 weight = without(query.near != nullptr ? query.near[k] : 0U, load(group + 48));
+    const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz);
+    const V16 w = select(weight > 0.0F, weight * inverse_power<0>(inv, query.exponent), V16{});
+    sum[0] += w;
+    for (int i = 0; i < 3; ++i) sum[1 + i] += w * load(group + 64 + 16 * i);
+  }
+  float s[16];
+  sum_lanes(sum, s);
+  for (int i = 0; i < 4; ++i) sums[i] = s[i];
+}
+
+void strand_in_middle(const StrandQuery& query, StrandInMiddle& out) {
+  const StrandErrors errors(query);
+  V16 a[12] = {}, largest{};
+  for (int k = 0; k < query.count; ++k) {
+    const float* const group = query.groups + k * floats_per_strand_group;
+    const NodesInMiddle at(group, query);
+    const unsigned near = query.near != nullptr ? near_nodes(at, group, query, errors) : 0U;
+    if (query.near != nullptr) query.near[k] = static_cast<unsigned short>(near);
+    const V16 ratio = without(near, select(at.weight > 0.0F, errors.radius / at.distance, V16{}));
+    const V16 w = without(near, at.w);
+    a[0] += w;
+    a[1] += errors.of_quadratic(w, ratio);
+    largest = larger(largest, ratio);
+  }
+  float s[16];
+  sum_lanes(a, s);
+  out = {.field = s[0], .error = s[1], .ratio = largest_lane(largest)};
+}
+
+// At the places where a cube is probed.
 void strand_samples(const StrandQuery& query, StrandSamples& out) {
-  const int m = query.exponent;
-  V16 error{}, nearest{};
   for (int at = 0; at < strand_places; ++at) {
     float p[3];
     for (int i = 0; i < 3; ++i) p[i] = query.center[i] + query.half * strand_place[at][i];
-    const float* group = query.groups;
-    V16 a[12] = {};
-    for (int k = 0; k < query.count; ++k, group += floats_per_strand_group) {
-      const V16 dx = p[0] - load(group), dy = p[1] - load(group + 16), dz = p[2] - load(group + 32);
-      const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz);
-      const V16 weight = weights_of(group + 48, query.left_out != nullptr ? query.left_out[k] : 0U);
-      const V16 w = select(weight > 0.0F, weight * inverse_power<0>(inv, m), V16{});
-      a[0] += w;
-      a[1] += w * load(group + 64);
-      a[2] += w * load(group + 80);
-      a[3] += w * load(group + 96);
-      if (at == 0) {
-        error += w * inv * root_of(inv);
-        nearest = larger(nearest, select(weight > 0.0F, inv, V16{}));
-      }
-    }
-    float s[16];
-    sum_lanes(a, s);
-    for (int i = 0; i < 4; ++i) out.sums[at][i] = s[i];
+    sum_nodes_at(p, query, out.sums[at]);
   }
-  V16 a[12] = {error};
-  float s[16];
-  sum_lanes(a, s);
-  const float radius = 1.7321F * query.half;
-  out.error = s[0] * radius * radius * radius;
-  out.ratio = radius * root_of(largest_lane(nearest));
 }
 
 // Adds f u^8, f, f^2 and f^2 with a direction of one strand to tensors at the places, a place in each lane; not where f

@@ -52,6 +52,12 @@ struct Strand16 {
   V16 along(const T (&v)[3]) const {
     return u[0].value * v[0] + u[1].value * v[1] + u[2].value * v[2];
   }
+  // Adds f (u . b.u)^7 u to the turn of another.
+  void turn_other(Strand16& b) const {
+    const V16 to[3] = {b.u[0].value, b.u[1].value, b.u[2].value};
+    const V16 steep = f.value * power_of(along(to), 7);
+    for (int k = 0; k < 3; ++k) b.turn[k] += steep * u[k].value;
+  }
 };
 static_assert(sizeof(Strand16) == floats_per_strand * sizeof(float));
 
@@ -131,44 +137,113 @@ inline void find_strands(const FieldLevel& level, int exponent, const Places16& 
   }
 }
 
-// N over the pairs of strands.
-inline V16 add_pairs(Strand16* strands, int count) {
-  for (int j = 1; j < count; ++j) {
-    Strand16& b = strands[j];
-    for (int i = 0; i < j; ++i) {
-      Strand16& a = strands[i];
-      const V16 to[3] = {b.u[0].value, b.u[1].value, b.u[2].value};
-      const V16 steep = power_of(a.along(to), 7), of_a = a.f.value * steep, of_b = b.f.value * steep;
-      for (int k = 0; k < 3; ++k) {
-        a.turn[k] += of_b * b.u[k].value;
-        b.turn[k] += of_a * a.u[k].value;
+// The symmetric tensor sum f u^8 over strands (field-maths 7), whose components are those of StrandLevel::far.
+struct Tensor16 {
+  V16 of[tensor_components] = {};
+
+  static constexpr int component(int i, int j) { return i * (19 - i) / 2 + j; }
+
+  Tensor16& operator+=(const Tensor16& b) {
+    for (int k = 0; k < tensor_components; ++k) of[k] += b.of[k];
+    return *this;
+  }
+};
+
+// How often each product of components is among the (i + j + k)! / (i! j! k!) of a power of degree Degree.
+template <int Degree>
+struct Multinomial {
+  float of[Degree + 1][Degree + 1] = {};
+  constexpr Multinomial() {
+    for (int i = 0; i <= Degree; ++i)
+      for (int j = 0; i + j <= Degree; ++j) {
+        int count = 1;
+        for (int k = 1; k <= i; ++k) count = count * (Degree - i + k) / k;
+        for (int k = 1; k <= j; ++k) count = count * (Degree - i - j + k) / k;
+        of[i][j] = static_cast<float>(count);
       }
+  }
+};
+inline constexpr Multinomial<7> times_in_seventh{};
+inline constexpr Multinomial<8> times_in_eighth{};
+
+// Of the direction of a strand: the powers of its components.
+template <int Degree>
+struct DirectionPowers {
+  V16 of[3][Degree + 1];
+
+  explicit DirectionPowers(const Strand16& s) {
+    for (int k = 0; k < 3; ++k) {
+      of[k][0] = splat(1);
+      for (int i = 1; i <= Degree; ++i) of[k][i] = of[k][i - 1] * s.u[k].value;
     }
   }
-  V16 twice{};
-  for (int j = 0; j < count; ++j) twice += strands[j].f.value * strands[j].along(strands[j].turn);
-  return 0.5F * twice;
+};
+
+inline void add_strand(const Strand16& s, Tensor16& to) {
+  const DirectionPowers<8> u(s);
+  for (int i = 0; i <= 8; ++i) {
+    const V16 first = s.f.value * u.of[0][i];
+    for (int j = 0; i + j <= 8; ++j) to.of[Tensor16::component(i, j)] += first * u.of[1][j] * u.of[2][8 - i - j];
+  }
 }
 
-// N over strands and the axes that stand for the far ones; adds what the weights of the axes change.
-inline void add_axes(const StrandLevel& level, const Places16& at, Strand16* strands, Slopes16& sum) {
-  Slopes16 weight[axis_count];
-  V16 on_axis[axis_count] = {};  // sum f_s (u_s . v)^8
-  for (int k = 0; k < axis_count; ++k) weight[k] = at.quadratic(level.far + k, tensor_floats);
-  for (int j = 0; j < level.count; ++j) {
-    Strand16& s = strands[j];
-    V16 turn[3] = {};
-    for (int k = 0; k < axis_count; ++k) {
-      const float v[3] = {level.axes[k], level.axes[tensor_floats + k], level.axes[2 * tensor_floats + k]};
-      const V16 g = s.along(v), steep = power_of(g, 7), of_axis = weight[k].value * steep;
-      on_axis[k] += s.f.value * (steep * g);
-      for (int i = 0; i < 3; ++i) turn[i] += of_axis * v[i];
+// Adds sum f_j (u_j . u)^7 u_j over the strands of a tensor to the turn of one.
+inline void turn_by(const Tensor16& t, Strand16& s) {
+  const DirectionPowers<7> u(s);
+  for (int i = 0; i <= 7; ++i)
+    for (int j = 0; i + j <= 7; ++j) {
+      const V16 product = times_in_seventh.of[i][j] * u.of[0][i] * u.of[1][j] * u.of[2][7 - i - j];
+      s.turn[0] += product * t.of[Tensor16::component(i + 1, j)];
+      s.turn[1] += product * t.of[Tensor16::component(i, j + 1)];
+      s.turn[2] += product * t.of[Tensor16::component(i, j)];
     }
-    sum.value += s.f.value * s.along(turn);
-    for (int i = 0; i < 3; ++i) s.turn[i] += turn[i];
+}
+
+// The strands that are the strongest at some place.
+struct Strongest {
+  int of[lanes], count = 0;
+
+  Strongest(const Strand16* strands, int all) {
+    V16 most{}, which = splat(-1);
+    for (int j = 0; j < all; ++j) {
+      const auto stronger = strands[j].f.value > most;
+      which = select(stronger, splat(static_cast<float>(j)), which);
+      most = select(stronger, strands[j].f.value, most);
+    }
+    alignas(64) float at_places[lanes];
+    __builtin_memcpy(at_places, &which, sizeof which);
+    for (const float at : at_places)
+      if (at >= 0 && !holds(static_cast<int>(at))) of[count++] = static_cast<int>(at);
   }
-  for (int k = 0; k < axis_count; ++k)
-    for (int e = 0; e < 3; ++e) sum.slope[e] += weight[k].slope[e] * on_axis[k];
+  bool holds(int strand) const {
+    for (int i = 0; i < count; ++i)
+      if (of[i] == strand) return true;
+    return false;
+  }
+};
+
+// Finds what turns each strand: all others by one tensor, less its own part, where that is not most of it at any place,
+// so that no digits are lost.
+inline void find_turns(Strand16* strands, int count, Tensor16 others, Tensor16& near) {
+  const Strongest strongest(strands, count);
+  Tensor16 strong;
+  near = {};
+  for (int j = 0; j < count; ++j) add_strand(strands[j], strongest.holds(j) ? strong : near);
+  others += near;
+  for (int i = 0; i < strongest.count; ++i) {
+    Strand16& s = strands[strongest.of[i]];
+    turn_by(others, s);
+    for (int j = 0; j < strongest.count; ++j)
+      if (j != i) strands[strongest.of[j]].turn_other(s);
+  }
+  others += strong;
+  near += strong;
+  for (int j = 0; j < count; ++j) {
+    if (strongest.holds(j)) continue;
+    Strand16& s = strands[j];
+    turn_by(others, s);
+    for (int k = 0; k < 3; ++k) s.turn[k] -= s.f.value * s.u[k].value;
+  }
 }
 
 // sum f_i f_j over pairs, one strand after the other.
@@ -202,23 +277,34 @@ void strand_shares(const FieldLevel& level, int degree, const float (&center)[3]
   const Places16 at(center, half);
   if (degree == 4) find_strands<4>(level, degree, at, strands);
   else find_strands<0>(level, degree, at, strands);
-  Slopes16 numerator;
-  numerator.value = add_pairs(strands, seen.count);
-  add_axes(seen, at, strands, numerator);
+  // Twice N over pairs of which one is among the near strands.
+  Tensor16 far, near;
+  for (int k = 0; k < tensor_components; ++k) far.of[k] = at.quadratic(seen.far + k, tensor_floats).value;
+  find_turns(strands, seen.count, far, near);
+  Slopes16 turned{};
+  for (int i = 0; i <= 8; ++i)
+    for (int j = 0; i + j <= 8; ++j) {
+      const int k = Tensor16::component(i, j);
+      const Slopes16 of_far = at.quadratic(seen.far + k, tensor_floats);
+      const V16 of_near = times_in_eighth.of[i][j] * near.of[k];
+      turned.value += of_near * of_far.value;
+      for (int e = 0; e < 3; ++e) turned.slope[e] += 2.0F * of_near * of_far.slope[e];
+    }
   PairsOfFields pairs;
   pairs.before = at.quadratic(seen.far + far_sum, tensor_floats);
   for (int j = 0; j < seen.count; ++j) {
     const Strand16& s = strands[j];
     pairs.add(s.f);
     const V16 by_f = s.along(s.turn), by_u = 8.0F * s.f.value;
+    turned.value += s.f.value * by_f;
     for (int e = 0; e < 3; ++e) {
-      V16 turned{};
-      for (int k = 0; k < 3; ++k) turned += s.turn[k] * s.u[k].slope[e];
-      numerator.slope[e] += by_f * s.f.slope[e] + by_u * turned;
+      V16 by_turn{};
+      for (int k = 0; k < 3; ++k) by_turn += s.turn[k] * s.u[k].slope[e];
+      turned.slope[e] += 2.0F * (by_f * s.f.slope[e] + by_u * by_turn);
     }
   }
   add_points(level, degree, at, pairs);
-  const Slopes16 above = numerator + numerator + at.quadratic(seen.far + far_turned_pairs, tensor_floats),
+  const Slopes16 above = turned + at.quadratic(seen.far + far_turned_pairs, tensor_floats),
                  below = pairs.sum + pairs.sum + at.quadratic(seen.far + far_pairs, tensor_floats);
   // One strand alone: any angle will do, see directional_alpha.h.
   const auto some = below.value > 1e-36F;
