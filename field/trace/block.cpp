@@ -187,7 +187,9 @@ const SharePart& Block::part(int path) const {
 
 ShareAt Block::share(const Vec3d& place) const {
   int layer[3];
-  for (std::size_t k = 0; k < 3; ++k) layer[k] = static_cast<int>(std::clamp(4 * place[k] + 4, 0.0, 7.5));
+  constexpr double half = 0.5 * SharePart::layers;
+  for (std::size_t k = 0; k < 3; ++k)
+    layer[k] = static_cast<int>(std::clamp(half * place[k] + half, 0.0, SharePart::layers - 0.5));
   return share_at(SharePatches::patch_of(part(SharePatches::path_to(layer))), place);
 }
 

@@ -16,8 +16,8 @@ struct alignas(64) SharePatch {
 };
 inline constexpr int floats_per_patch = sizeof(SharePatch) / sizeof(float);
 
-/// A part of a block, for which there is one patch, or eight smaller parts: an octant of the block, of one of those, or
-/// of one of these, which is a slot. Parts of one cube follow each other by their octants, x the lowest bit. What runs
+/// A part of a block, for which there is one patch, or eight smaller parts: an octant of the block, of one of those,
+/// and so on to the octants of slots. Parts of one cube follow each other by their octants, x the lowest bit. What runs
 /// need of a patch is here, so that they find it where they find out that there is one.
 struct alignas(32) SharePart {
   /// Of the patch; one more than that of the first of eight parts; or 0 where neither is made yet. The rest may be
@@ -29,9 +29,11 @@ struct alignas(32) SharePart {
   float bent = 0;  ///< of eight parts: what one patch would be off, 0 where none was tried
 
   static constexpr std::uintptr_t divided = 1;
-  /// Of the first octant of a path to a slot, which is the octants of three halvings, the largest cube's in the highest
+  /// From the block to the smallest parts, of which there are so many along each axis.
+  static constexpr int halvings = 4, layers = 1 << halvings;
+  /// Of the first octant of a path to a smallest part: the octants that hold it, the largest cube's in the highest
   /// bits.
-  static constexpr int root_shift = 6;
+  static constexpr int root_shift = 3 * (halvings - 1);
 };
 
 }  // namespace marrow

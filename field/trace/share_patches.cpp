@@ -19,7 +19,7 @@ constexpr double residual_ratio = 64;
 struct Cube {
   float center[3], half;
 };
-// The part that holds the slot of a path, by the highest bits of it.
+// The part that holds the smallest one of a path, by the highest bits of it.
 Cube cube_of(int path, int shift) {
   Cube cube{.center = {0, 0, 0}, .half = 1};
   for (int s = SharePart::root_shift; s >= shift; s -= 3) {
@@ -45,7 +45,7 @@ void SharePatches::free_all(const Eight& eight) {
 
 int SharePatches::path_to(const int (&layer)[3]) {
   int path = 0;
-  for (int log2 = 2; log2 >= 0; --log2)
+  for (int log2 = SharePart::halvings - 1; log2 >= 0; --log2)
     for (int k = 2; k >= 0; --k) path = path << 1 | (layer[k] >> log2 & 1);
   return path;
 }

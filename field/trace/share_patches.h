@@ -2,8 +2,8 @@
 //
 // What strands.h tells of a place is fitted by polynomials, and these are what is traced: their bounds along a ray are
 // exact, they cost little, and the coarse level can use lines beside them. The parts are octants of the block, or
-// octants of those down to its slots where the fit is not good enough, or would not be by what that of the larger part
-// is off; each is made when the first ray comes by, and is a function of the block alone.
+// octants of those down to those of its slots where the fit is not good enough, or would not be by what that of the
+// larger part is off; each is made when the first ray comes by, and is a function of the block alone.
 #pragma once
 
 #include <array>
@@ -27,14 +27,14 @@ class SharePatches {
   SharePatches& operator=(const SharePatches&) = delete;
   ~SharePatches() { free_all(octants_); }
 
-  /// The part that holds a slot, which has a patch. `strands()` is the level of stranded_level.h; it is asked for when
-  /// a patch is made.
+  /// The part that holds a smallest one, which has a patch. `strands()` is the level of stranded_level.h; it is asked
+  /// for when a patch is made.
   template <class Strands>
   const SharePart& at(int path, const BlockKernels& kernels, int degree, const Strands& strands) const;
 
   const SharePart* octants() const { return octants_.parts.data(); }
   static const SharePatch& patch_of(const SharePart& part) { return *patch_at(part.address); }
-  /// To a slot, given by its layers, 0 to 7: from the largest cube to the smallest the octants that hold it.
+  /// To a smallest part, given by its layers: from the largest cube to the smallest the octants that hold it.
   static int path_to(const int (&layer)[3]);
 
   std::size_t bytes() const { return bytes_.load(std::memory_order_relaxed); }

@@ -42,11 +42,15 @@ inline IntOf<F> layer_of(F x) {
   return whole_part(max_of(0.0F, min_of(x * half + half, last)));
 }
 
-// The path to a slot: from the largest cube to the smallest the octants that hold it, x the lowest bit of each.
+// The path to a smallest part: from the largest cube to the smallest the octants that hold it, x the lowest bit of
+// each.
 template <class Int>
 inline Int path_to(const Int (&layer)[3]) {
+  static_assert(SharePart::layers == 16);
   static constexpr int spread[3][16] = {
-      {0, 1, 8, 9, 64, 65, 72, 73}, {0, 2, 16, 18, 128, 130, 144, 146}, {0, 4, 32, 36, 256, 260, 288, 292}};
+      {0, 1, 8, 9, 64, 65, 72, 73, 512, 513, 520, 521, 576, 577, 584, 585},
+      {0, 2, 16, 18, 128, 130, 144, 146, 1024, 1026, 1040, 1042, 1152, 1154, 1168, 1170},
+      {0, 4, 32, 36, 256, 260, 288, 292, 2048, 2052, 2080, 2084, 2304, 2308, 2336, 2340}};
   return picked(spread[0], layer[0]) | picked(spread[1], layer[1]) | picked(spread[2], layer[2]);
 }
 
@@ -55,7 +59,7 @@ inline void ask_for_eight(const SharePart* parts) {
   for (int octant = 0; octant < 8; octant += 2) __builtin_prefetch(parts + octant);
 }
 
-// That holds a slot of the block; made where it is asked for first.
+// That holds a smallest part of the block; made where it is asked for first.
 inline const SharePart& part_at(const BlockView& block, int path) {
   const SharePart* parts = block.parts;
   for (int shift = SharePart::root_shift;; shift -= 3) {
@@ -114,15 +118,16 @@ struct LineOfPart {
 
   LineOfPart(const BlocksOf<F>& blocks, const RayOf<F>& ray, F t, MaskOf<F> rays) {
     IntOf<F> layer[3];
-    for (int k = 0; k < 3; ++k) layer[k] = layer_of(ray.origin[k] + ray.direction[k] * t);
+    for (int k = 0; k < 3; ++k) layer[k] = layer_of<SharePart::layers>(ray.origin[k] + ray.direction[k] * t);
     const PartLines<F> part = lines_at(blocks, rays, path_to(layer));
-    const IntOf<F> layers = whole_part(part.half * 8.0F);
+    constexpr float of_block = SharePart::layers;
+    const IntOf<F> layers = whole_part(part.half * of_block);
     at = part.level;
     slope = F{};
     bent = part.bent;
     F center[3];
     for (int k = 0; k < 3; ++k) {
-      center[k] = (to_float(layer[k] & -layers) * 0.25F + part.half) - 1.0F;
+      center[k] = (to_float(layer[k] & -layers) * (2 / of_block) + part.half) - 1.0F;
       at += part.slope[k] * (ray.origin[k] - center[k]);
       slope += part.slope[k] * ray.direction[k];
     }
@@ -256,9 +261,9 @@ struct ShareInPatch {
 
   ShareInPatch(const BlocksOf<F>& blocks, const RayOf<F>& ray, F t, MaskOf<F> rays) {
     Patches<F> patches;
-    const IntOf<F> layer[3] = {layer_of(ray.origin[0] + ray.direction[0] * t),
-                               layer_of(ray.origin[1] + ray.direction[1] * t),
-                               layer_of(ray.origin[2] + ray.direction[2] * t)};
+    const IntOf<F> layer[3] = {layer_of<SharePart::layers>(ray.origin[0] + ray.direction[0] * t),
+                               layer_of<SharePart::layers>(ray.origin[1] + ray.direction[1] * t),
+                               layer_of<SharePart::layers>(ray.origin[2] + ray.direction[2] * t)};
     patches.find(blocks, rays, layer);
     share = ShareOnRun<F>(patches, ray, t);
     const F center[3] = {patches.center(0), patches.center(1), patches.center(2)};
