@@ -39,9 +39,8 @@ class StressScene {
   bool is_odd() const { return is_odd(kind_); }
   static bool is_odd(std::size_t kind) { return kind >= single_angle_kinds + varied_kinds; }
   /// A stretch inside counts as missed if the corrected field gets this far above 1 on it: the traced field may differ
-  /// by 1e-5 of the radius, times the slope of some n - 1 over a radius. The angle that strands give is an estimate:
-  /// its share of the range is within 1e-4 at 99 of 100 random places.
-  double grazing_excess() const { return kind_ + 1 == single_angle_kinds + varied_kinds ? 1e-4 : 1e-5; }
+  /// by 1e-5 of the radius, times the slope of some n - 1 over a radius.
+  static constexpr double grazing_excess() { return 1e-5; }
   const BlendField& blend() const { return blend_; }
   const EmbreeSurfaces& surfaces() const { return *surfaces_; }
   const Oracle& oracle() const { return *oracle_; }
