@@ -175,7 +175,8 @@ unsigned Block::known_surface(std::uint64_t (&octants)[8]) const {
 }
 
 const SharePart& Block::part(int path) const {
-  // 1024 levels of w2 (26 strands, 870 lanes of sources) take 49 MiB; with most_strands as long they would take 640.
+  // 1024 levels of w2 (34 strands, 684 lanes of sources: eight numbers each, and 40 a strand) take 31 MiB; with
+  // most_strands as long they would take 440.
   constexpr std::size_t most_bytes = std::size_t{64} << 20;
   thread_local LevelCache<1024> cache(most_bytes);
   return patches_->at(path, context_.kernels, context_.degree, [&]() -> const BlockLevel& {
