@@ -2,7 +2,7 @@
 //
 // What strands.h tells of a place is fitted by polynomials, and these are what is traced: their bounds along a ray are
 // exact, they cost little, and the coarse level can use lines beside them. The parts are octants of the block, or
-// octants of those down to those of its slots where the fit is not good enough, or would not be by what that of the
+// octants of octants, down to those of slots, where the fit is not good enough, or would not be by what that of the
 // larger part is off; each is made when the first ray comes by, and is a function of the block alone.
 #pragma once
 
