@@ -16,6 +16,7 @@
 #include "field/trace/block_view.h"
 #include "field/trace/cube_remainder.h"
 #include "field/trace/field_around.h"
+#include "field/trace/strand_tensor.h"
 
 namespace marrow {
 

@@ -83,7 +83,7 @@ struct BlockView {
   int degree = 4;
   IsoCurve::View iso;
   AngleTables tables;  ///< where alpha varies
-  /// Where directions give alpha, else null: the octants of the block, and what makes the part that holds a slot.
+  /// Where directions give alpha, else null: the octants of the block, and what makes that of a path.
   const SharePart* parts = nullptr;
   const SharePart& (*make_part)(const void* owner, int path) = nullptr;
 

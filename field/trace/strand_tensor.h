@@ -4,6 +4,24 @@
 
 namespace marrow {
 
+/// How often x^i y^j z^(Degree-i-j) is among the 3^Degree products of a power of (x, y, z): Degree! / (i! j! k!),
+/// exact.
+template <int Degree>
+struct Multinomial {
+  float of[Degree + 1][Degree + 1] = {};
+  consteval Multinomial() {
+    for (int i = 0; i <= Degree; ++i)
+      for (int j = 0; i + j <= Degree; ++j) {
+        int count = 1;
+        for (int k = 1; k <= i; ++k) count = count * (Degree - i + k) / k;
+        for (int k = 1; k <= j; ++k) count = count * (Degree - i - j + k) / k;
+        of[i][j] = static_cast<float>(count);
+      }
+  }
+};
+inline constexpr Multinomial<7> times_in_seventh;
+inline constexpr Multinomial<8> times_in_eighth;
+
 /// sum f_i f_j (u_i . u_j)^8 over all i and j of a tensor sum f_i u_i^8 of tensor_components numbers.
 double contracted_with_itself(const float* tensor);
 

@@ -52,6 +52,7 @@ class Strands {
   /// Of the segment that a piece is part of; 0 of a point.
   Vec3d direction(std::uint32_t piece) const;
 
+  /// What the cell with this middle and half side sees, which lies in the tile; lengths in those of the blend.
   CellStrands around(const Tile&, const Vec3d& center, double half) const;
 
  private:

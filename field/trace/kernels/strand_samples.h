@@ -19,23 +19,22 @@ struct StrandErrors {
   }
 };
 
-// The nodes of a group in the middle of a cube; unused lanes have no field.
-struct NodesInMiddle {
-  V16 weight, distance, w;
-  NodesInMiddle(const float* group, const StrandQuery& query) : weight(load(group + 48)) {
-    const V16 dx = query.center[0] - load(group), dy = query.center[1] - load(group + 16),
-              dz = query.center[2] - load(group + 32), d2 = dx * dx + dy * dy + dz * dz;
-    distance = root_of(d2);
-    w = select(weight > 0.0F, weight * inverse_power<0>(1.0F / d2, query.exponent), V16{});
+// The nodes of a group and their fields at a place; unused lanes have none.
+struct NodesAt {
+  V16 weight, distance2, w;
+  NodesAt(const float* group, const StrandQuery& query, const float (&p)[3]) : weight(load(group + 48)) {
+    const V16 dx = p[0] - load(group), dy = p[1] - load(group + 16), dz = p[2] - load(group + 32);
+    distance2 = dx * dx + dy * dy + dz * dz;
+    w = select(weight > 0.0F, weight * inverse_power<0>(1.0F / distance2, query.exponent), V16{});
   }
 };
 
 // The lanes of a group whose pieces count one by one.
-inline unsigned near_nodes(const NodesInMiddle& at, const float* group, const StrandQuery& query,
+inline unsigned near_nodes(const NodesAt& at, const float* group, const StrandQuery& query,
                            const StrandErrors& errors) {
-  const V16 ratio = errors.radius / at.distance;
+  const V16 distance = root_of(at.distance2), ratio = errors.radius / distance;
   const auto far = (ratio < query.largest_ratio) & (errors.of_quadratic(at.w, ratio) < query.allowed) &
-                   (errors.of_rule(at.w, load(group + 112), load(group + 128), at.distance) < query.allowed);
+                   (errors.of_rule(at.w, load(group + 112), load(group + 128), distance) < query.allowed);
   const unsigned near = ~lane_bits(far) & lane_bits(at.weight > 0.0F);
   return near | (near & 0x5555U) << 1 | (near >> 1 & 0x5555U);
 }
@@ -55,10 +54,7 @@ inline void sum_nodes_at(const float (&p)[3], const StrandQuery& query, float (&
   V16 sum[12] = {};
   const float* group = query.groups;
   for (int k = 0; k < query.count; ++k, group += floats_per_strand_group) {
-    const V16 dx = p[0] - load(group), dy = p[1] - load(group + 16), dz = p[2] - load(group + 32);
-    const V16 weight = without(query.near != nullptr ? query.near[k] : 0U, load(group + 48));
-    const V16 inv = 1.0F / (dx * dx + dy * dy + dz * dz);
-    const V16 w = select(weight > 0.0F, weight * inverse_power<0>(inv, query.exponent), V16{});
+    const V16 w = without(query.near != nullptr ? query.near[k] : 0U, NodesAt(group, query, p).w);
     sum[0] += w;
     for (int i = 0; i < 3; ++i) sum[1 + i] += w * load(group + 64 + 16 * i);
   }
@@ -72,10 +68,10 @@ void strand_in_middle(const StrandQuery& query, StrandInMiddle& out) {
   V16 a[12] = {}, largest{};
   for (int k = 0; k < query.count; ++k) {
     const float* const group = query.groups + k * floats_per_strand_group;
-    const NodesInMiddle at(group, query);
+    const NodesAt at(group, query, query.center);
     const unsigned near = query.near != nullptr ? near_nodes(at, group, query, errors) : 0U;
     if (query.near != nullptr) query.near[k] = static_cast<unsigned short>(near);
-    const V16 ratio = without(near, select(at.weight > 0.0F, errors.radius / at.distance, V16{}));
+    const V16 ratio = without(near, select(at.weight > 0.0F, errors.radius / root_of(at.distance2), V16{}));
     const V16 w = without(near, at.w);
     a[0] += w;
     a[1] += errors.of_quadratic(w, ratio);

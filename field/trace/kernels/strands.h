@@ -149,23 +149,6 @@ struct Tensor16 {
   }
 };
 
-// How often each product of components is among the (i + j + k)! / (i! j! k!) of a power of degree Degree.
-template <int Degree>
-struct Multinomial {
-  float of[Degree + 1][Degree + 1] = {};
-  constexpr Multinomial() {
-    for (int i = 0; i <= Degree; ++i)
-      for (int j = 0; i + j <= Degree; ++j) {
-        int count = 1;
-        for (int k = 1; k <= i; ++k) count = count * (Degree - i + k) / k;
-        for (int k = 1; k <= j; ++k) count = count * (Degree - i - j + k) / k;
-        of[i][j] = static_cast<float>(count);
-      }
-  }
-};
-inline constexpr Multinomial<7> times_in_seventh{};
-inline constexpr Multinomial<8> times_in_eighth{};
-
 // Of the direction of a strand: the powers of its components.
 template <int Degree>
 struct DirectionPowers {
