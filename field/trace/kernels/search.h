@@ -237,10 +237,13 @@ struct Search {
     return holds;
   }
 
-  // Nothing can be told of gaps shorter than this, where p is.
+  // Nothing can be told of gaps shorter than this, where p is. Beside a root that is the root as well as it is known. A
+  // gap with certified stretches on both sides is looked into: they end there because certificates are as short.
   Mask too_short(const Sample& p) const {
+    constexpr float shortest_between = shortest_gap / 8;
     const F right = gap_end(), middle = 0.5F * (front + right);
-    return (right - front < shortest_gap * p.distance) | !((middle > front) & (middle < right));
+    const F least = select(bracketed(), all_lanes<F>(shortest_gap), all_lanes<F>(shortest_between));
+    return (right - front < least * p.distance) | !((middle > front) & (middle < right));
   }
 
   // The next place after `samples` of them, p the last. Newton's guesses are quick unless the field stays near 1 over a
