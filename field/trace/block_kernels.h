@@ -101,8 +101,13 @@ struct CellRoots {
   LaneSet met, hit;  ///< met the surface; and not behind their ends
 };
 
-/// Gaps along a ray shorter than this times the distance to the nearest source are not decided.
+/// Gaps along a ray shorter than this times the distance to the nearest source are not decided: with an inside place
+/// behind it, such a gap is the root as well as it is known.
 inline constexpr float shortest_gap = 2e-5F;
+
+/// The same of gaps that end at a certified stretch or with the run. Beside a root certificates are as short as
+/// shortest_gap, so that two of them leave gaps of that size which more samples close; an eighth is three halvings.
+inline constexpr float shortest_gap_between = shortest_gap / 8;
 
 /// In half sides: any root, as told by a place inside, this near to the end of the ray is given as that end, for the
 /// first root may lie before it or behind. Roots are off by shortest_gap times a distance of some diagonals, and ends

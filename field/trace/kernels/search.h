@@ -12,7 +12,8 @@ struct Islands {
   using Sample = SampleOf<Rule, F>;
   using Mask = MaskOf<F>;
 
-  // Bisection halves the first gap before it adds an island: down to shortest_gap that is some 20 on top of the others.
+  // When the stack is full, the nearest is forgotten for one still nearer: the first gap shrinks all the same, so that
+  // a search by halves always ends.
   static constexpr int most = 40;
   struct Island {
     F begin, end;
@@ -47,9 +48,7 @@ struct Islands {
   }
 
   void push(Mask rays, F begin, F end, const Sample& sample) {
-    rays = rays & (count < most);
-    if (!any(rays)) return;
-    count = count + select(rays, IntOf<F>{} + 1, IntOf<F>{});
+    count = count + select(rays & (count < most), IntOf<F>{} + 1, IntOf<F>{});
     at_top(rays, [&](Island& top, Mask here) {
       assign(here, top.begin, begin);
       assign(here, top.end, end);
@@ -148,7 +147,7 @@ struct Search {
     const F begin = certified_end(outside, p, -1, front), finish = certified_end(outside, p, 1, limit);
     const Mask from_front = outside & (begin <= front), beyond = outside & !from_front;
     if (any(beyond)) {
-      assign(beyond & (islands.count < islands.most), nearest_island, begin);
+      assign(beyond, nearest_island, begin);
       islands.push(beyond, begin, finish, p);
     }
     if (any(from_front)) reach(from_front, finish, p);
@@ -237,12 +236,10 @@ struct Search {
     return holds;
   }
 
-  // Nothing can be told of gaps shorter than this, where p is. Beside a root that is the root as well as it is known. A
-  // gap with certified stretches on both sides is looked into: they end there because certificates are as short.
+  // Whether the first gap is given up, where p is.
   Mask too_short(const Sample& p) const {
-    constexpr float shortest_between = shortest_gap / 8;
     const F right = gap_end(), middle = 0.5F * (front + right);
-    const F least = select(bracketed(), all_lanes<F>(shortest_gap), all_lanes<F>(shortest_between));
+    const F least = select(bracketed(), all_lanes<F>(shortest_gap), all_lanes<F>(shortest_gap_between));
     return (right - front < least * p.distance) | !((middle > front) & (middle < right));
   }
 
