@@ -9,7 +9,10 @@ import re
 import sys
 import tempfile
 
-# A folder may include itself and the folders named here. A trailing file name opens that file only.
+BELOW_TRACE = ["field/base", "field/math", "field/number", "field/description", "field/kernel", "field/skeleton",
+               "field/blend", "field/tree", "field/program"]
+
+# A folder may include itself, with all in it, and the folders named here. A trailing file name opens that file only.
 ARROWS = {
     "field/base": [],
     "field/math": ["field/base"],
@@ -23,8 +26,15 @@ ARROWS = {
                    "field/blend"],
     "field/program": ["field/base", "field/math", "field/number", "field/description", "field/kernel",
                       "field/skeleton", "field/blend", "field/tree"],
-    "field/trace": ["field/base", "field/math", "field/number", "field/description", "field/kernel",
-                    "field/skeleton", "field/blend", "field/tree", "field/program"],
+    "field/trace/curve": BELOW_TRACE,
+    "field/trace/kernels": BELOW_TRACE + ["field/trace/curve"],
+    "field/trace/sources": BELOW_TRACE + ["field/trace/kernels"],
+    "field/trace/levels": BELOW_TRACE + ["field/trace/kernels", "field/trace/sources"],
+    "field/trace/shares": BELOW_TRACE + ["field/trace/kernels", "field/trace/sources", "field/trace/levels"],
+    "field/trace/cells": BELOW_TRACE + ["field/trace/curve", "field/trace/kernels", "field/trace/sources",
+                                        "field/trace/levels", "field/trace/shares"],
+    "field/trace": BELOW_TRACE,
+    "field/trace/general": BELOW_TRACE + ["field/trace/cells", "field/trace/blend_tracer.h"],
     "materials": ["field/base", "field/math"],
     "renderer/output": ["field/base", "field/math"],
     "renderer/slice": ["field/base", "field/math", "renderer/output"],

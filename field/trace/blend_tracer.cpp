@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "field/trace/blend_tracer_state.h"
-#include "field/trace/cell_walk.h"
+#include "field/trace/cells/cell_walk.h"
+#include "field/trace/cells/ray_in_cube.h"
 #include "field/trace/outside_bound.h"
-#include "field/trace/ray_in_cube.h"
 
 namespace marrow {
 

@@ -20,8 +20,8 @@
 #include "field/math/box3.h"
 #include "field/math/ray.h"
 #include "field/math/ray_packet.h"
-#include "field/trace/cell_settings.h"
-#include "field/trace/field_around.h"
+#include "field/trace/cells/cell_settings.h"
+#include "field/trace/kernels/field_around.h"
 #include "field/trace/ray_visit.h"
 
 namespace marrow {

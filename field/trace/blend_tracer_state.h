@@ -5,13 +5,13 @@
 #include <optional>
 #include <utility>
 
-#include "field/trace/angle_field.h"
+#include "field/base/serial.h"
 #include "field/trace/blend_tracer.h"
-#include "field/trace/block.h"
-#include "field/trace/cell_tree.h"
-#include "field/trace/precision.h"
-#include "field/trace/serial.h"
-#include "field/trace/strands.h"
+#include "field/trace/cells/block.h"
+#include "field/trace/cells/cell_tree.h"
+#include "field/trace/cells/precision.h"
+#include "field/trace/cells/strands.h"
+#include "field/trace/shares/angle_field.h"
 
 namespace marrow {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "field/math/elementary.h"
-#include "field/trace/quadrature.h"
+#include "field/trace/sources/quadrature.h"
 
 namespace marrow {
 namespace {

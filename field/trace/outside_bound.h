@@ -2,9 +2,9 @@
 #pragma once
 
 #include "field/math/vec3.h"
-#include "field/trace/iso_curve.h"
-#include "field/trace/near_far.h"
-#include "field/trace/source_tree.h"
+#include "field/trace/curve/iso_curve.h"
+#include "field/trace/sources/near_far.h"
+#include "field/trace/sources/source_tree.h"
 
 namespace marrow {
 

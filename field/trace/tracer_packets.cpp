@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "field/trace/blend_tracer_state.h"
-#include "field/trace/cell_walk.h"
-#include "field/trace/slot_layers.h"
+#include "field/trace/cells/cell_walk.h"
+#include "field/trace/cells/slot_layers.h"
 
 namespace marrow {
 namespace {

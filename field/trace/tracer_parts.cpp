@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "field/trace/blend_tracer_state.h"
-#include "field/trace/cell_walk.h"
-#include "field/trace/ray_in_cube.h"
-#include "field/trace/slot_layers.h"
+#include "field/trace/cells/cell_walk.h"
+#include "field/trace/cells/ray_in_cube.h"
+#include "field/trace/cells/slot_layers.h"
 
 namespace marrow {
 

@@ -5,8 +5,8 @@ namespace marrow::avx512 {
 namespace {
 // In this order: each builds on those before.
 // clang-format off
-#include "field/trace/kernels/native.h"
-#include "field/trace/kernels/doubles.h"
+#include "field/trace/kernels/lanes/native.h"
+#include "field/trace/kernels/lanes/doubles.h"
 #include "renderer/geometry/kernels/rays_among_boxes.h"
 // clang-format on
 }  // namespace

@@ -11,7 +11,7 @@
 #include "field/math/box3.h"
 #include "field/math/ray.h"
 #include "field/math/vec3.h"
-#include "field/trace/field_around.h"
+#include "field/trace/kernels/field_around.h"
 
 namespace marrow {
 

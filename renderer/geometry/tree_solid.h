@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "field/trace/tree_tracer.h"
+#include "field/trace/general/tree_tracer.h"
 #include "renderer/geometry/solid.h"
 
 namespace marrow {

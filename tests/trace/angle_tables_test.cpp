@@ -1,5 +1,5 @@
 // Tables of a range of angles never say outside wrongly, and are on the curves of all its angles.
-#include "field/trace/angle_tables.h"
+#include "field/trace/curve/angle_tables.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "field/blend/correction.h"
-#include "field/trace/turned_curve.h"
+#include "field/trace/curve/turned_curve.h"
 #include "tests/trace/random_scene.h"
 
 namespace marrow::test {

@@ -1,6 +1,6 @@
 // Blocks: both levels are within their stated errors of the exact field, and the slots that may hold surface
 // leave out no surface.
-#include "field/trace/block.h"
+#include "field/trace/cells/block.h"
 
 #include <algorithm>
 #include <array>

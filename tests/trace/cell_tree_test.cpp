@@ -1,5 +1,5 @@
 // Cells cover the surface, and the space they leave out lies on one side of it.
-#include "field/trace/cell_tree.h"
+#include "field/trace/cells/cell_tree.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // What levels are made of: nodes written from pieces are those of their rules, with the same bits whatever the set.
-#include "field/trace/compact_level.h"
+#include "field/trace/levels/compact_level.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "field/math/elementary.h"
-#include "field/trace/near_far.h"
-#include "field/trace/precision.h"
-#include "field/trace/source_emitter.h"
+#include "field/trace/cells/precision.h"
+#include "field/trace/sources/near_far.h"
+#include "field/trace/sources/source_emitter.h"
 #include "tests/field/random.h"
 
 namespace marrow::test {

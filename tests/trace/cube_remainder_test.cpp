@@ -1,5 +1,5 @@
 // What a far source leaves of its Taylor series anywhere in a cube, by the direction in which it lies.
-#include "field/trace/cube_remainder.h"
+#include "field/trace/kernels/cube_remainder.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "field/trace/far_field.h"
+#include "field/trace/sources/far_field.h"
 #include "tests/trace/random_scene.h"
 
 namespace marrow::test {

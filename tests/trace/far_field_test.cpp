@@ -1,5 +1,5 @@
 // Far fields: polynomials near enough to what they stand for, the same function for a child, and bounded.
-#include "field/trace/far_field.h"
+#include "field/trace/sources/far_field.h"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "field/skeleton/skeletons.h"
-#include "field/trace/kept_far_field.h"
-#include "field/trace/level_polynomials.h"
+#include "field/trace/levels/level_polynomials.h"
+#include "field/trace/sources/kept_far_field.h"
 #include "tests/trace/far_value.h"
 #include "tests/trace/stage.h"
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "field/blend/blend_field.h"
-#include "field/trace/iso_curve.h"
+#include "field/trace/curve/iso_curve.h"
 
 namespace marrow::test {
 

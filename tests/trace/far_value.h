@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "field/math/elementary.h"
-#include "field/trace/far_field.h"
+#include "field/trace/sources/far_field.h"
 
 namespace marrow::test {
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "field/trace/far_field.h"
+#include "field/trace/sources/far_field.h"
 #include "tests/trace/all_cells.h"
 #include "tests/trace/large_cells.h"
 #include "tests/trace/oracle.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "field/trace/block_kernels.h"
+#include "field/trace/kernels/block_kernels.h"
 
 namespace marrow::test {
 

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "field/trace/block_kernels.h"
-#include "field/trace/far_field.h"
+#include "field/trace/kernels/block_kernels.h"
+#include "field/trace/sources/far_field.h"
 #include "tests/trace/all_cells.h"
 #include "tests/trace/random_rays.h"
 #include "tests/trace/touching_limbs.h"

@@ -1,5 +1,5 @@
 // The table of the curve C = 1 never says outside or inside wrongly, and says it nearly always.
-#include "field/trace/iso_curve.h"
+#include "field/trace/curve/iso_curve.h"
 
 #include <algorithm>
 #include <cmath>

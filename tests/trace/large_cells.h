@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "field/trace/blend_tracer.h"
-#include "field/trace/ray_spacing.h"
+#include "field/trace/cells/ray_spacing.h"
 
 namespace marrow::test {
 

@@ -1,5 +1,5 @@
 // The cache of levels gives what was made for a block, makes it once while it has room, and stays within its bytes.
-#include "field/trace/level_cache.h"
+#include "field/trace/levels/level_cache.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // Pieces add up to their skeletons, and what is called inside is inside.
-#include "field/trace/pieces.h"
+#include "field/trace/sources/pieces.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // Gauss-Legendre rules are exact for polynomials, and their error for a piece of skeleton is bounded.
-#include "field/trace/quadrature.h"
+#include "field/trace/sources/quadrature.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Where the rays of a camera are few, cells are larger, and the surface stays where it is.
-#include "field/trace/ray_spacing.h"
+#include "field/trace/cells/ray_spacing.h"
 
 #include <array>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "field/trace/blend_tracer.h"
-#include "field/trace/precision.h"
+#include "field/trace/cells/precision.h"
 #include "tests/trace/first_of_tiles.h"
 #include "tests/trace/random_rays.h"
 

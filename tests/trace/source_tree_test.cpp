@@ -1,5 +1,5 @@
 // Groups of sources: they hold what they say, and stand for their pieces within the errors they state.
-#include "field/trace/source_tree.h"
+#include "field/trace/sources/source_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "field/skeleton/skeletons.h"
-#include "field/trace/upper_cubes.h"
+#include "field/trace/cells/upper_cubes.h"
 #include "tests/trace/far_value.h"
 #include "tests/trace/stage.h"
 

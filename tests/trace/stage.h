@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "field/trace/blend_tracer.h"
-#include "field/trace/block.h"
-#include "field/trace/cell_tree.h"
-#include "field/trace/precision.h"
+#include "field/trace/cells/block.h"
+#include "field/trace/cells/cell_tree.h"
+#include "field/trace/cells/precision.h"
 #include "tests/trace/far_space.h"
 #include "tests/trace/random_scene.h"
 

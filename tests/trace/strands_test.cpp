@@ -1,5 +1,5 @@
 // The strands of a blend whose angle follows their directions, where more of them crowd around a cell than it may list.
-#include "field/trace/strands.h"
+#include "field/trace/cells/strands.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "field/trace/level_buffer.h"
-#include "field/trace/stranded_level.h"
+#include "field/trace/cells/stranded_level.h"
+#include "field/trace/levels/level_buffer.h"
 #include "tests/trace/stage.h"
 
 namespace marrow::test {

@@ -1,5 +1,5 @@
 // The tracer of general trees against dense sampling of the field along rays, over random trees of all kinds of nodes.
-#include "field/trace/tree_tracer.h"
+#include "field/trace/general/tree_tracer.h"
 
 #include <algorithm>
 #include <utility>
@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "field/program/field_program.h"
-#include "field/trace/crossing.h"
+#include "field/trace/general/crossing.h"
 #include "field/tree/any_node.h"
 #include "tests/field/random.h"
 

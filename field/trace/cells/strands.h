@@ -1,0 +1,93 @@
+// The strands of a blend whose angle follows their directions, as cubes see them.
+//
+// alpha = sum_{i != j} f_i f_j gamma_ij / sum_{i != j} f_i f_j [Zanni et al. 2015, eq. 15], gamma_ij by the directions
+// of two strands, each the mean of its segments' weighted by their fields. Strands that a quadratic over a cube tells
+// well enough are one quadratic together, of the tensor sum f u^8 and of three sums, through which they meet the others
+// in a time linear in their number (field-maths 7). Of each other strand the pieces that a quadratic would not tell
+// count one by one, and what is left is a quadratic of f and of sum f_s u_s. Well enough is judged by what is left out
+// over the field of all strands but the strongest, as alpha is a mean over pairs. Quadratics are fitted at 15 places of
+// the cube.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "field/trace/kernels/block_kernels.h"
+#include "field/trace/sources/pieces.h"
+
+namespace marrow {
+
+class Tile;
+struct BlendField;
+
+/// What a cube sees of the strands.
+struct StrandView {
+  std::vector<std::uint32_t> near;  ///< those that count one by one
+  std::vector<float> far;           ///< all others: tensor_floats for each monomial, in the coordinates of the cube
+  double others = 0;                ///< the field of all strands but the strongest in its middle
+  double error = 0;                 ///< of the share of angles, because of quadratics: an estimate
+};
+
+/// A near strand in a cell.
+struct NearStrand {
+  std::vector<std::uint32_t> listed;         ///< pieces that count one by one
+  float rest[4 * quadratic_monomials] = {};  ///< of the others, StrandLevel::rest
+};
+
+/// What a cell sees.
+struct CellStrands {
+  StrandView view;
+  std::vector<NearStrand> near;  ///< view.near, in its order
+  std::vector<float> far;        ///< StrandLevel::far
+};
+
+/// Immutable; safe to use from many threads.
+class Strands {
+ public:
+  /// `pieces` in the order of the tree, whose indices are used. No point is of the strand of others.
+  Strands(const BlendField&, std::span<const Piece> pieces, const BlockKernels&);
+
+  /// Of the segment that a piece is part of; 0 of a point.
+  Vec3d direction(std::uint32_t piece) const;
+
+  /// What the cell with this middle and half side sees, which lies in the tile; lengths in those of the blend.
+  CellStrands around(const Tile&, const Vec3d& center, double half) const;
+
+ private:
+  struct Strand {
+    Vec3d origin;
+    double scale = 0;  // of its groups: 1 / a radius of it
+    std::size_t first = 0;
+    int count = 0;  // of groups
+    bool is_point = false;
+    std::vector<std::uint32_t> pieces;  // in ascending order
+  };
+  struct Cube;
+  struct Seen;
+  struct alignas(64) Group {
+    float at[3][lanes], weight[lanes], direction[3][lanes], length[lanes], taper[lanes];
+  };
+  static_assert(sizeof(Group) == floats_per_strand_group * sizeof(float));
+
+  void add_nodes(const Piece&, std::uint32_t index, int& lane);
+  const StrandView& around(const Tile&) const;
+  StrandQuery query(std::uint32_t strand, const Cube&) const;
+  Seen see(std::uint32_t strand, const Cube&) const;
+  static std::vector<bool> forced(const std::vector<Seen>&, std::size_t most);
+  // Leaves at most `most` to count one by one. `values`: of the tensor, at the places of the cube.
+  StrandView fold(const std::vector<Seen>&, const Cube&, const StrandView* parent, const Cube& parent_cube,
+                  std::size_t most, std::vector<float>& values) const;
+  // Adds what the rest is off to the error of the view.
+  NearStrand divided(std::uint32_t strand, const Cube&, StrandView&) const;
+
+  std::span<const Piece> pieces_;
+  const BlockKernels& kernels_;
+  int degree_;
+  std::vector<std::uint32_t> strand_of_, first_node_;  // of each piece; the lane of its first node in its strand
+  std::vector<Strand> strands_;
+  std::vector<Group> groups_;
+};
+
+}  // namespace marrow

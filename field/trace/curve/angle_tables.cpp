@@ -1,0 +1,254 @@
+#include "field/trace/curve/angle_tables.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+
+#include <tbb/parallel_for.h>
+
+#include "field/blend/correction.h"
+#include "field/trace/curve/turned_curve.h"
+
+namespace marrow {
+namespace {
+
+// Of angles.
+constexpr double largest_step = 0.02;
+constexpr int fewest_steps = 8, fewest_entries = 512;
+// Where G is nearly 0 curves of small angles run along the axis of G, see iso_table.cpp.
+constexpr double least_turn = 0.3;
+// Curves end near by when it is at no more times the gradient of the reference curve at the iso-value than this.
+constexpr double farthest_end = 2;
+// Before the kink at the border of the cavity branch.
+constexpr double fewest_entries_to_kink = 4;
+// Where a curve may begin between entries, or have a kink there.
+constexpr std::size_t first_entries = 8;
+// Of float entries and of what is reckoned from them in float, relative.
+constexpr double rounding = 6e-7;
+// Towards the axis f = 0 curves are as steep as roots, and those of some angles of a step have ended: nothing is
+// certain from this f on. No field has so large a gradient there.
+constexpr double least_certain_field = 0.1;
+// Below V by so much no place is outside.
+constexpr double uncertain = 1e4;
+
+// A quadratic by its values at -1/2, 0 and 1/2, rounded to float.
+struct Quadratic {
+  std::array<float, 3> p{};
+
+  Quadratic() = default;
+  Quadratic(double a, double b, double c)
+      : p{static_cast<float>(b), static_cast<float>(c - a), static_cast<float>(2 * (a - 2 * b + c))} {}
+  double at(double s) const {
+    return static_cast<double>(p[0]) + s * (static_cast<double>(p[1]) + s * static_cast<double>(p[2]));
+  }
+};
+
+struct Curve {
+  Correction correction;
+  TurnedCurve turned;
+  Curve(const Correction& like, double alpha, double turn)
+      : correction(like.degree(), alpha, like.cavity(), like.projection()),
+        turned(correction, critical_field_of(correction), turn) {}
+  Curve(const Curve&) = delete;
+  Curve& operator=(const Curve&) = delete;
+
+  // V', from the partials: along the curve C_x dx + C_y dy = 0.
+  std::optional<double> slope(double u, double v) const {
+    const TurnedLine line = turned.line_of(u);
+    const auto c = correction.partials(line.x(v), line.y(v));
+    const double slope =
+        (turned.cosine() * c.df - turned.sine() * c.dG) / (turned.sine() * c.df + turned.cosine() * c.dG);
+    return std::isfinite(slope) ? std::optional(slope) : std::nullopt;
+  }
+};
+
+// One step of the range.
+class Step {
+ public:
+  Quadratic begin, inverse_step;
+  double sine = 0, cosine = 0;
+  std::vector<Quadratic> value, slope;
+  std::vector<double> below;
+
+  Step(const Correction& like, double middle, double width) {
+    const double turn = std::max(middle, least_turn);
+    const Curve curves[3] = {{like, middle - width / 2, turn}, {like, middle, turn}, {like, middle + width / 2, turn}};
+    sine = curves[1].turned.sine();
+    cosine = curves[1].turned.cosine();
+    find_places(curves);
+    find_values(curves);
+    below.assign(value.size(), 0);
+    probe(curves[1], 0, {0.25, 0.5, 0.75});
+    for (const double s : {-0.25, 0.25}) probe(Curve(like, middle + s * width, turn), s, {0, 0.5});
+    for (const double s : {-0.45, -0.35, -0.15, -0.05, 0.05, 0.15, 0.35, 0.45})
+      probe(Curve(like, middle + s * width, turn), s, {0, 0.25, 0.5, 0.75}, first_entries);
+    for (std::size_t k = 0; k < 3; ++k) leave_end_uncertain(curves[k].turned, 0.5 * (static_cast<double>(k) - 1));
+  }
+
+ private:
+  double place(double entry, double s) const { return begin.at(s) + entry / inverse_step.at(s); }
+
+  // Equal steps for all angles, from a begin that moves with the angle: so that the same entry stands at the kink of
+  // each curve, or else at the begin of each. Without kinks, curves that end near by end at the same entry, too: else,
+  // where begins move fast, far steps would with them. Where ends move fast themselves it would make quadratics in the
+  // angle ten times as rough.
+  void find_places(const Curve (&curves)[3]) {
+    double lengths[3];
+    bool ends_near = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const TurnedCurve& c = curves[k].turned;
+      lengths[k] = (c.end() - c.begin()) / (fewest_entries - 1);
+      ends_near = ends_near && c.ends_at_axis() && c.end() < farthest_end * (curves[k].correction.degree() - 1);
+    }
+    const double longest = std::max({lengths[0], lengths[1], lengths[2]});
+    const auto kinks = kinks_of(curves, fewest_entries_to_kink * longest);
+    const bool at_kinks = kinks.has_value();
+    const std::array<double, 3> fixed =
+        kinks.value_or(std::array{curves[0].turned.begin(), curves[1].turned.begin(), curves[2].turned.begin()});
+    double before = 0, behind = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const TurnedCurve& c = curves[k].turned;
+      if (at_kinks || !ends_near) lengths[k] = longest;
+      before = std::max(before, std::ceil((fixed[k] - c.begin()) / lengths[k]));
+      behind = std::max(behind, std::ceil((c.end() - fixed[k]) / lengths[k]));
+    }
+    inverse_step = {1 / lengths[0], 1 / lengths[1], 1 / lengths[2]};
+    begin = {fixed[0] - before * lengths[0], fixed[1] - before * lengths[1], fixed[2] - before * lengths[2]};
+    value.resize(static_cast<std::size_t>(before + behind) + 1);
+  }
+
+  // Where all curves have one that is not nearer to the begin than this: from there they move too fast.
+  static std::optional<std::array<double, 3>> kinks_of(const Curve (&curves)[3], double from_begin) {
+    std::array<double, 3> kinks{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto kink = curves[k].turned.kink();
+      if (!kink || *kink - curves[k].turned.begin() < from_begin) return {};
+      kinks[k] = *kink;
+    }
+    return kinks;
+  }
+
+  void find_values(const Curve (&curves)[3]) {
+    std::vector<double> found[3], slopes[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double s = 0.5 * (static_cast<double>(k) - 1), first = curves[k].turned.begin();
+      const double first_value = curves[k].turned.value(first, 0, 0),
+                   first_slope = curves[k].slope(first, first_value).value_or(0);
+      int known = 0;
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        const double u = place(static_cast<double>(i), s);
+        std::vector<double>& v = found[k];
+        if (u < first) {  // no place is there
+          v.push_back(first_value + first_slope * (u - first));
+          slopes[k].push_back(first_slope);
+          continue;
+        }
+        if (u > curves[k].turned.end() && curves[k].turned.ends_at_axis()) {
+          v.push_back(v[i - 1] + slopes[k][i - 1] / inverse_step.at(s));
+          slopes[k].push_back(slopes[k][i - 1]);
+          continue;
+        }
+        // By the parabola through the last three.
+        const bool guessed = ++known > 4;
+        const double guess = guessed ? 3 * (v[i - 1] - v[i - 2]) + v[i - 3] : 0;
+        v.push_back(curves[k].turned.value(u, guess, guessed ? 1e-4 / inverse_step.at(s) : 0));
+        const double before = i > 0 ? (v[i] - v[i - 1]) * inverse_step.at(s) : 0;
+        slopes[k].push_back(curves[k].slope(u, v[i]).value_or(before));
+      }
+    }
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      value[i] = {found[0][i], found[1][i], found[2][i]};
+      slope.emplace_back(slopes[0][i], slopes[1][i], slopes[2][i]);
+    }
+  }
+
+  // Curves fall in f towards their end, and those of other angles lie between them.
+  void leave_end_uncertain(const TurnedCurve& curve, double s) {
+    for (std::size_t i = value.size(); i-- > 0;) {
+      const double field = curve.line_of(place(static_cast<double>(i), s)).x(value[i].at(s));
+      if (field > least_certain_field) return;
+      below[i] = uncertain;
+    }
+  }
+
+  // How far below V a curve is, where `places` are from each entry to the next, or where it begins if it does so
+  // between them. What quadratics and straight lines are off are smooth arches, but for kinks: at most twice as much as
+  // there.
+  void probe(const Curve& curve, double s, std::initializer_list<double> places,
+             std::size_t most = std::numeric_limits<std::size_t>::max()) {
+    double known = 1e-6;
+    for (std::size_t i = 0; i + 1 < std::min(value.size(), most); ++i) {
+      const double from = place(static_cast<double>(i), s),
+                   begin_at = (curve.turned.begin() - from) * inverse_step.at(s);
+      if (begin_at > 1) continue;
+      double low = 0, largest = 0;
+      for (const double at : places) {
+        const double fraction = std::max(at, begin_at), line = std::lerp(value[i].at(s), value[i + 1].at(s), fraction);
+        const double error = line - curve.turned.value(from + fraction / inverse_step.at(s), line, known);
+        low = std::max(low, 2 * error);
+        largest = std::max(largest, std::fabs(error));
+      }
+      known = 4 * largest + 1e-9;
+      for (const std::size_t j : {i, i + 1}) below[j] = std::max(below[j], low);
+    }
+  }
+};
+
+void add(const Quadratic& q, double last, std::vector<float>& to) {
+  to.insert(to.end(), q.p.begin(), q.p.end());
+  to.push_back(static_cast<float>(last));
+}
+
+}  // namespace
+
+AngleCurves::AngleCurves(const Correction& correction, double least, double most) {
+  const double steps = std::max<double>(fewest_steps, std::ceil((most - least) / largest_step));
+  const double width = (most - least) / steps;
+  count_ = static_cast<int>(steps);
+  std::vector<std::optional<Step>> made(static_cast<std::size_t>(count_));
+  tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t k) {
+    made[k].emplace(correction, least + (static_cast<double>(k) + 0.5) * width, width);
+  });
+  std::size_t stride = 0;
+  for (const auto& step : made) stride = std::max(stride, step->value.size());
+  stride_ = static_cast<int>(stride);
+  for (std::size_t k = 0; k < made.size(); ++k) {
+    const Step& step = *made[k];
+    for (std::size_t i = 0; i < step.value.size(); ++i) {
+      const double highest = std::fabs(step.value[i].at(-0.5)) + std::fabs(step.value[i].at(0.5));
+      add(step.value[i], step.below[i] + rounding * (1 + highest), entries_);
+      add(step.slope[i], 0, slopes_);
+    }
+    entries_.resize(4 * stride * (k + 1));
+    slopes_.resize(4 * stride * (k + 1));
+    for (std::size_t i = 0; i < 3; ++i) {
+      of_steps_[i].push_back(step.begin.p[i]);
+      of_steps_[3 + i].push_back(step.inverse_step.p[i]);
+    }
+    of_steps_[6].push_back(static_cast<float>(step.sine));
+    of_steps_[7].push_back(static_cast<float>(step.cosine));
+    of_steps_[8].push_back(static_cast<float>(step.value.size() - 1));
+  }
+  constexpr std::size_t numbers = 32;
+  for (auto& of_all : of_steps_) of_all.resize(std::max(of_all.size(), numbers));
+}
+
+AngleTables AngleCurves::tables() const {
+  if (entries_.empty()) return {};
+  const auto of = [&](int i) { return of_steps_[i].data(); };
+  return {.entries = entries_.data(),
+          .slopes = slopes_.data(),
+          .begin = {of(0), of(1), of(2)},
+          .inverse_step = {of(3), of(4), of(5)},
+          .sin_theta = of(6),
+          .cos_theta = of(7),
+          .last = of(8),
+          .stride = stride_,
+          .count = count_};
+}
+
+}  // namespace marrow

@@ -1,0 +1,36 @@
+#include "field/trace/curve/iso_curve.h"
+
+#include <algorithm>
+
+#include "field/blend/correction.h"
+
+namespace marrow {
+namespace {
+
+// Of the ends of a range, which tell of cubes alone.
+constexpr int entry_count = 256;
+
+IsoTable end_of_range(const Correction& like, double alpha) {
+  return {Correction(like.degree(), alpha, like.cavity(), like.projection()), alpha, entry_count};
+}
+
+}  // namespace
+
+IsoCurve::IsoCurve(const Correction& correction, double alpha) : least_(alpha), most_(alpha) {
+  ends_.emplace_back(correction, alpha);
+}
+
+IsoCurve::IsoCurve(const Correction& correction, double least, double most)
+    : least_(least), most_(most), angles_(correction, least, most) {
+  for (const double alpha : {least, most}) ends_.push_back(end_of_range(correction, alpha));
+}
+
+bool IsoCurve::outside(double x_low, double x_high, double y_high) const {
+  return std::ranges::all_of(ends_, [&](const IsoTable& end) { return end.outside(x_low, x_high, y_high); });
+}
+
+bool IsoCurve::inside(double x_low, double y_low) const {
+  return std::ranges::all_of(ends_, [&](const IsoTable& end) { return end.inside(x_low, y_low); });
+}
+
+}  // namespace marrow

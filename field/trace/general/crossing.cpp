@@ -1,0 +1,192 @@
+#include "field/trace/general/crossing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace marrow {
+namespace {
+
+using OnRay = Jet<Interval, 1>;
+
+// Bounds that do not shrink with the piece could be halved for ever. After the first so many evaluations, and again
+// after each further so many, gaps count as short that are 16 times as long: what is left undecided is reported, and
+// what lies behind it is still searched.
+constexpr std::uint32_t first_evaluations = 2000, more_evaluations = 500;
+// Sums are not known any better: a piece that stays so near to 1, on one side at its ends, cannot be decided.
+constexpr double sums_are_off = 1e-10;
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+enum class Side { Unknown, Outside, Inside };
+
+class Search {
+ public:
+  Search(const FieldTree& tree, std::uint32_t record, const Ray& ray, bool any)
+      : tree_(tree), record_(record), ray_(ray), any_(any) {}
+
+  CrossingSearch run(double begin, double end) {
+    nearby_ = std::max(max_component(abs(ray_.at(begin))), max_component(abs(ray_.at(end))));
+    // Pieces still to be searched, nearest last.
+    open_.push_back({begin, end, Side::Unknown, Side::Unknown});
+    while (!open_.empty() && !found_.t) {
+      const Piece piece = open_.back();
+      open_.pop_back();
+      examine(piece);
+    }
+    // A gap that ends at the crossing is the crossing itself, as exactly as sums are known.
+    if (found_.t && *found_.t - found_.undecided <= 16 * gap(*found_.t)) found_.undecided = inf;
+    return found_;
+  }
+
+ private:
+  struct Piece {
+    double begin, end;
+    Side at_begin, at_end;
+
+    bool crosses() const { return at_begin != at_end; }
+  };
+
+  double at(double t) {
+    ++found_.evaluations;
+    return value(tree_, ray_.at(t), record_);
+  }
+  Side side(double t) { return at(t) >= 1 ? Side::Inside : Side::Outside; }
+  void learn_sides(Piece& piece) {
+    if (piece.at_begin == Side::Unknown) piece.at_begin = side(piece.begin);
+    if (piece.at_end == Side::Unknown) piece.at_end = side(piece.end);
+  }
+
+  OnRay enclosure(const Interval& t) {
+    ++found_.evaluations;
+    const OnRay along = OnRay::variable(t, 0);
+    const Vec3d& o = ray_.origin;
+    const Vec3d& d = ray_.direction;
+    return value(
+        tree_,
+        Vec3<OnRay>{OnRay(o.x) + along * OnRay(d.x), OnRay(o.y) + along * OnRay(d.y), OnRay(o.z) + along * OnRay(d.z)},
+        record_);
+  }
+  Interval enclosure_at(double t) {
+    ++found_.evaluations;
+    const Interval s(t);
+    const Vec3d& o = ray_.origin;
+    const Vec3d& d = ray_.direction;
+    return value(tree_,
+                 Vec3<Interval>{Interval(o.x) + s * Interval(d.x), Interval(o.y) + s * Interval(d.y),
+                                Interval(o.z) + s * Interval(d.z)},
+                 record_);
+  }
+
+  // Settles the piece, or puts back what remains of it.
+  void examine(Piece piece) {
+    const OnRay f = enclosure({piece.begin, piece.end});
+    if (!f.value.contains(1)) return;
+    const Interval slope = f.slope[0];
+    if (any_) {
+      learn_sides(piece);
+      if (piece.crosses()) {
+        found_.t = piece.end;
+        return;
+      }
+    }
+    const bool known = std::isfinite(slope.lo) && std::isfinite(slope.hi);
+    if (known && (slope.lo > 0 || slope.hi < 0)) {
+      learn_sides(piece);
+      if (piece.crosses()) found_.t = placed(piece);
+      return;
+    }
+    if (found_.evaluations >= allowed_) {
+      allowed_ += more_evaluations;
+      coarseness_ *= 16;
+    }
+    if (length(piece) <= coarseness_ * gap(piece.end) || is_flat(f.value, piece)) {
+      give_up(piece);
+      return;
+    }
+    const double middle = piece.begin + 0.5 * (piece.end - piece.begin);
+    if (!known) {
+      split(piece, middle, middle, side(middle));
+      return;
+    }
+    // The field moves from its value in the middle by no more than its slope allows: that clears the middle.
+    const Interval center = enclosure_at(middle);
+    if (center.contains(1)) {
+      split(piece, middle, middle, side(middle));
+      return;
+    }
+    const bool is_above = center.lo > 1;
+    const double margin = (is_above ? center.lo - 1 : 1 - center.hi) * (1 - 1e-12);
+    const double ahead = is_above ? -slope.lo : slope.hi, back = is_above ? slope.hi : -slope.lo;
+    const auto reach = [&](double steepness) { return steepness > 0 ? margin / steepness * (1 - 1e-12) : inf; };
+    split(piece, middle - reach(back), middle + reach(ahead), is_above ? Side::Inside : Side::Outside);
+  }
+
+  // Leaves what is before `left` and behind `right`; there and between the field is on one side.
+  void split(const Piece& piece, double left, double right, Side between) {
+    if (right < piece.end) open_.push_back({right, piece.end, between, piece.at_end});
+    if (left > piece.begin) open_.push_back({piece.begin, left, piece.at_begin, between});
+  }
+
+  void give_up(Piece piece) {
+    learn_sides(piece);
+    if (!piece.crosses() || !is_short(piece)) found_.undecided = std::min(found_.undecided, piece.begin);
+    if (piece.crosses()) found_.t = placed(piece);
+  }
+
+  bool is_flat(const Interval& f, Piece& piece) {
+    if (!(1 - f.lo < sums_are_off && f.hi - 1 < sums_are_off)) return false;
+    learn_sides(piece);
+    return !piece.crosses();
+  }
+
+  // Of t, or of the coordinates that the ray runs through.
+  double size(double t) const { return std::max(std::fabs(t), max_component(abs(ray_.origin))); }
+  // Sums of a blend are known to 3e-11 of themselves: pieces shorter than 2^-34 (6e-11) of coordinates there say
+  // nothing new. It is far below the ulp of a float. Where the ray comes from far away, places are rounded by more.
+  double gap(double t) const { return std::max(0x1p-34 * nearby_, 0x1p-48 * size(t)); }
+  static double length(const Piece& piece) { return piece.end - piece.begin; }
+  bool is_short(const Piece& piece) const { return length(piece) <= gap(piece.end); }
+
+  // The one change of side, by regula falsi that halves the weight of an end that stays (the Illinois rule), with
+  // halving where that is slow. The end on the far side is returned: t is never before the surface.
+  double placed(Piece piece) {
+    double a = piece.begin, b = piece.end, fa = at(a) - 1, fb = at(b) - 1;
+    int stays = 0;
+    for (int step = 0; step < 200 && b - a > 16 * rounding::ulp * size(b); ++step) {
+      double t = step % 4 == 3 ? a + 0.5 * (b - a) : b - fb * (b - a) / (fb - fa);
+      if (!(t > a && t < b)) t = a + 0.5 * (b - a);
+      if (!(t > a && t < b)) break;
+      const double ft = at(t) - 1;
+      if ((ft >= 0) == (piece.at_begin == Side::Inside)) {
+        a = t, fa = ft;
+        if (stays < 0) fb *= 0.5;
+        stays = -1;
+      } else {
+        b = t, fb = ft;
+        if (stays > 0) fa *= 0.5;
+        stays = 1;
+      }
+    }
+    return b;
+  }
+
+  const FieldTree& tree_;
+  std::uint32_t record_;
+  const Ray& ray_;
+  bool any_;
+  std::uint32_t allowed_ = first_evaluations;
+  double coarseness_ = 1;  // of what is short, over gap()
+  double nearby_ = 0;      // the largest coordinate on the stretch
+  std::vector<Piece> open_;
+  CrossingSearch found_;
+};
+
+}  // namespace
+
+CrossingSearch find_crossing(const FieldTree& tree, std::uint32_t record, const Ray& ray, double begin, double end,
+                             bool any) {
+  return Search(tree, record, ray, any).run(begin, end);
+}
+
+}  // namespace marrow

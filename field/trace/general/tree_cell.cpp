@@ -1,0 +1,112 @@
+#include "field/trace/general/tree_cell.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "field/trace/cells/divider.h"
+
+namespace marrow {
+namespace {
+
+// 2^6 cells along the longest side: finer cells cost more to make than they save. Deeper only where a tree of many
+// nodes goes on getting smaller, or a blend still has skeletons that are too near for sums over nodes.
+constexpr int max_level = 6, max_level_of_leaf = 5, max_level_near = 11, max_level_of_many = 24;
+constexpr std::size_t many_records = 64;
+// A part of space whose tree has more than this share of the nodes of the one around it shares that.
+constexpr double worth_a_copy = 0.7;
+// Neighbours overlap by more than what the errors of their fields move a root; their trees hold a little farther.
+constexpr double overlap = 1e-6, validity = 4e-6;
+
+Vec3<Interval> span_of(const Box3& box) {
+  return {{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
+}
+
+Vec3<Jet<Interval, 3>> with_slopes(const Box3& box) {
+  using X = Jet<Interval, 3>;
+  return {X::variable({box.lower.x, box.upper.x}, 0), X::variable({box.lower.y, box.upper.y}, 1),
+          X::variable({box.lower.z, box.upper.z}, 2)};
+}
+
+bool excludes_zero(const Interval& x) { return x.lo > 0 || x.hi < 0; }
+
+bool is_fine_enough(const FieldTree& tree, bool shrinks, bool one_sheet, int level) {
+  const std::size_t records = tree.records().size();
+  if (records > many_records && shrinks && level < max_level_of_many) return false;
+  if (level < max_level_near && has_near_skeletons(tree)) return false;
+  return level >= (records <= 1 ? max_level_of_leaf : max_level) || (one_sheet && level >= 2);
+}
+
+}  // namespace
+
+Interval clip(const Box3& cell, const Ray& ray) {
+  const Box3 box = cell.padded(0.5 * cell.size().x * overlap);
+  Interval t{ray.t_min, Box3::inf};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double o = ray.origin[i], d = ray.direction.vec()[i];
+    if (d == 0) {
+      if (o < box.lower[i] || o > box.upper[i]) return {1, 0};
+      continue;
+    }
+    const double a = (box.lower[i] - o) / d, b = (box.upper[i] - o) / d;
+    t.lo = std::max(t.lo, std::min(a, b));
+    t.hi = std::min(t.hi, std::max(a, b));
+  }
+  return t;
+}
+
+// The cube of the box, with a little room.
+std::unique_ptr<const TreeCell> TreeCell::root(const FieldTree& tree, const Box3& box, std::uint32_t record) {
+  std::unique_ptr<TreeCell> cell(new TreeCell(box.center(), 0.5 * max_component(box.size()) * (1 + 1e-6), 0));
+  cell->tree_ = std::make_shared<const FieldTree>(localized(tree, cell->box().padded(cell->half_ * validity), record));
+  return cell;
+}
+
+bool TreeCell::holds(const Vec3d& p) const { return box().padded(0.5 * validity * half_).contains(p); }
+
+// The octant, unless bounds prove all of it outside or inside.
+std::unique_ptr<const TreeCell> TreeCell::octant(int i) const {
+  std::unique_ptr<TreeCell> cell(new TreeCell(octant_center(center_, half_, i), half_ / 2, level_ + 1));
+  const Box3 around = cell->box().padded(cell->half_ * validity);
+  // As the larger cube sums it: enough to drop most of what can be dropped, before anything is made for it.
+  if (!value(*tree_, span_of(around)).contains(1)) return {};
+  FieldTree own = localized(*tree_, around);
+  const auto f = value(own, with_slopes(around));
+  if (!f.value.contains(1)) return {};
+  const bool one_sheet = excludes_zero(f.slope[0]) || excludes_zero(f.slope[1]) || excludes_zero(f.slope[2]);
+  const std::size_t records = own.records().size();
+  const bool shrinks = static_cast<double>(records) < worth_a_copy * static_cast<double>(tree_->records().size());
+  cell->is_leaf_ = is_fine_enough(own, shrinks, one_sheet, cell->level_);
+  cell->tree_ = shrinks || records <= many_records ? std::make_shared<const FieldTree>(std::move(own)) : tree_;
+  return cell;
+}
+
+const TreeCell::Octants& TreeCell::octants() const {
+  return octants_.get([&] {
+    auto made = std::make_unique<Octants>();
+    for (int i = 0; i < 8; ++i) (*made)[static_cast<std::size_t>(i)] = octant(i);
+    return std::unique_ptr<const Octants>(std::move(made));
+  });
+}
+
+const TreeCell& TreeCell::leaf_at(const Vec3d& p) const {
+  const TreeCell* here = this;
+  while (!here->is_leaf_) {
+    const Octants& octants = here->octants();
+    const auto next = std::find_if(octants.begin(), octants.end(), [&](const auto& o) { return o && o->holds(p); });
+    if (next == octants.end()) break;
+    here = next->get();
+  }
+  return *here;
+}
+
+std::size_t TreeCell::bytes() const {
+  double sum = sizeof *this + static_cast<double>(bytes_of(*tree_)) / static_cast<double>(tree_.use_count());
+  if (const Octants* made = octants_.peek()) {
+    sum += sizeof *made;
+    for (const auto& o : *made)
+      if (o) sum += static_cast<double>(o->bytes());
+  }
+  return static_cast<std::size_t>(sum);
+}
+
+}  // namespace marrow

@@ -1,0 +1,269 @@
+#include "field/trace/general/tree_tracer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <tbb/parallel_for.h>
+
+#include "field/trace/general/crossing.h"
+
+namespace marrow {
+namespace {
+
+// Space is divided so far before rays come: into some hundred elements at most of each member.
+constexpr int first_levels = 3;
+// Of more members than this, those without operators are not divided: a ray that meets the box of one has few others
+// to meet, and a search along it takes less than cells take memory.
+constexpr std::size_t few_members = 64;
+// Of so many members at most, all are asked at a crossing whether it is inside them: 2 us.
+constexpr std::size_t most_asked = 1024;
+Vec3<Interval> span_of(const Box3& box) {
+  return {{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
+}
+
+// The box without slabs at its sides that bounds prove to be outside.
+Box3 trimmed(const FieldTree& tree, const Member& member) {
+  constexpr int halvings = 10;
+  Box3 box = member.bounds;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (Vec3d Box3::*side : {&Box3::lower, &Box3::upper}) {
+      double outside = (box.*side)[i], unknown = box.center()[i];
+      for (int step = 0; step < halvings; ++step) {
+        const double cut = 0.5 * (outside + unknown);
+        Box3 slab = box;
+        (slab.*(side == &Box3::lower ? &Box3::upper : &Box3::lower))[i] = cut;
+        (value(tree, span_of(slab), member.record).hi < 1 ? outside : unknown) = cut;
+      }
+      (box.*side)[i] = outside;
+    }
+  return box;
+}
+
+}  // namespace
+
+Result<TreeTracer> TreeTracer::make(FieldTree tree) {
+  TreeTracer made(std::move(tree));
+  const std::vector<Member> all = members(made.tree_);
+  if (all.size() > 1 && all.size() <= most_asked) made.members_ = all;
+  for (const Member& member : all) {
+    if (member.bounds.empty()) continue;
+    if (!(is_finite(member.bounds.lower) && is_finite(member.bounds.upper)))
+      return failure("the surface of this field has no end; intersect it with something bounded");
+    made.bounds_.include(member.bounds);
+    if (member.is_leaf && all.size() > few_members)
+      made.cells_.push_back({trimmed(made.tree_, member), member.record, nullptr});
+    else made.divide(member);
+  }
+  return made;
+}
+
+// In the order of space.
+void TreeTracer::divide(const Member& member) {
+  roots_.push_back(TreeCell::root(tree_, member.bounds, member.record));
+  std::vector<const TreeCell*> level{roots_.back().get()};
+  for (int depth = 1; !level.empty(); ++depth) {
+    tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) { level[i]->octants(); });
+    std::vector<const TreeCell*> next;
+    for (const TreeCell* parent : level)
+      for (const auto& octant : parent->octants()) {
+        if (!octant) continue;
+        if (octant->is_leaf() || depth == first_levels) cells_.push_back({octant->box(), member.record, octant.get()});
+        else next.push_back(octant.get());
+      }
+    level = std::move(next);
+  }
+}
+
+namespace {
+
+// Leaves in the order of the ray.
+class CellSearch {
+ public:
+  CellSearch(const Ray& ray, bool any, CellLog& log) : ray_(ray), any_(any), log_(log) {}
+
+  std::optional<TreeHit> in(const TreeCell& cell, const Interval& t) {
+    if (cell.is_leaf()) return in(cell.tree(), FieldTree::whole, t, &cell);
+    struct Stretch {
+      Interval t;
+      const TreeCell* cell;
+    };
+    std::array<Stretch, 8> inside;
+    std::size_t count = 0;
+    for (const auto& octant : cell.octants()) {
+      if (!octant) continue;
+      Interval part = clip(octant->box(), ray_);
+      part.hi = std::min(part.hi, t.hi);
+      if (part.lo <= part.hi) inside[count++] = {part, octant.get()};
+    }
+    const auto end = inside.begin() + static_cast<std::ptrdiff_t>(count);
+    std::stable_sort(inside.begin(), end, [](const Stretch& a, const Stretch& b) { return a.t.lo < b.t.lo; });
+    std::optional<TreeHit> nearest;
+    for (auto s = inside.begin(); s != end && !(nearest && nearest->t < s->t.lo); ++s)
+      if (const auto hit = in(*s->cell, s->t); hit && !(nearest && nearest->t <= hit->t)) {
+        nearest = hit;
+        if (any_) break;
+      }
+    return nearest;
+  }
+
+  std::optional<TreeHit> in(const FieldTree& tree, std::uint32_t record, const Interval& t, const TreeCell* cell) {
+    const CrossingSearch found = find_crossing(tree, record, ray_, t.lo, t.hi, any_);
+    log_.evaluations += found.evaluations;
+    log_.undecided = std::min(log_.undecided, found.undecided);
+    return found.t ? std::optional(TreeHit{*found.t, cell}) : std::nullopt;
+  }
+
+ private:
+  const Ray& ray_;
+  bool any_;
+  CellLog& log_;
+};
+
+}  // namespace
+
+std::optional<TreeHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, bool any, CellLog& log) const {
+  const Cell& c = cells_[cell];
+  Interval t = clip(c.box, ray);
+  log.enter = t.lo;
+  const double nearly_ended = 0x1p-30 * std::max(std::fabs(t.hi), max_component(abs(ray.origin)));  // gaps are shorter
+  if (any) t.hi = std::min(t.hi, ray.t_max + nearly_ended);
+  Ray onward = ray;
+  while (t.lo <= t.hi) {
+    // Any crossing is told by a place behind it: not what is_covered() asks for.
+    CellSearch search(onward, any && members_.empty(), log);
+    const auto hit = c.part != nullptr ? search.in(*c.part, t) : search.in(tree_, c.member, t, nullptr);
+    // Where any crossing may lie behind the end of the ray, the first one tells.
+    if (any && hit && hit->t > ray.t_max - nearly_ended) return first_hit(cell, ray, false, log);
+    if (!hit || hit->t > ray.t_max) return {};
+    if (members_.empty() || !(is_covered(c.member, ray, hit->t) || is_joint(c.member, ray, hit->t))) return hit;
+    onward.t_min = t.lo = std::max(hit->t, std::nextafter(t.lo, Box3::inf));
+  }
+  return {};
+}
+
+// Whether another member is all around a crossing. For a ray from outside it is so only behind a crossing of that
+// member: what is asked is the place before the crossing, by more than crossings are misplaced.
+bool TreeTracer::is_covered(std::uint32_t member, const Ray& ray, double t) const {
+  constexpr double sums_are_off = 1e-6;
+  const double size = std::max(std::fabs(t), max_component(abs(ray.origin)));
+  const Vec3d p = ray.at(std::max(ray.t_min, t - 64 * rounding::ulp * size));
+  return largest_of_others(member, p) > 1 + sums_are_off;
+}
+
+// Whether the ray goes on from the member into another one, or the other way, through a common face: members are above
+// 1 before and behind, and bounds prove that between no more is outside than what sums and positions are off.
+bool TreeTracer::is_joint(std::uint32_t member, const Ray& ray, double t) const {
+  constexpr double least_reach = 1e-11, most_reach = 1e-8, rounding_of_sums = 1e-13, sums_are_off = 1e-10;
+  const double size = std::max(std::fabs(t), max_component(abs(ray.origin)));
+  const auto largest_at = [&](const auto& p) { return max(value(tree_, p, member), largest_of_others(member, p)); };
+  // Where fields are flat sums tell the side only farther away.
+  double by = least_reach * size;
+  for (;; by *= 10) {
+    if (by > most_reach * size || !(t - by > ray.t_min)) return false;
+    const double off = std::min(largest_at(ray.at(t - by)), largest_at(ray.at(t + by))) - 1;
+    if (off < 0) return false;
+    if (off > rounding_of_sums) break;
+  }
+  const Vec3d& o = ray.origin;
+  const Vec3d& d = ray.direction;
+  const auto enclosure = [&](const Interval& along) {
+    return largest_at(Vec3<Interval>{Interval(o.x) + along * Interval(d.x), Interval(o.y) + along * Interval(d.y),
+                                     Interval(o.z) + along * Interval(d.z)});
+  };
+  const Interval here = enclosure(Interval(t));
+  const double least = 1 - sums_are_off - 2 * (here.hi - here.lo), shortest = 4 * rounding::ulp * size;
+  double from = t - by, step = 2 * by;
+  while (from < t + by) {
+    const double to = std::min(from + step, t + by);
+    if (enclosure({from, to}).lo > least) {
+      from = to;
+      step *= 2;
+    } else if (step > shortest) {
+      step *= 0.5;
+    } else {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Of those that can be 1 at p, a point.
+template <Number X>
+X TreeTracer::largest_of_others(std::uint32_t member, const Vec3<X>& p) const {
+  X largest(0.0);
+  const Vec3d at{lower(p.x), lower(p.y), lower(p.z)};
+  for (const Member& other : members_)
+    if (other.record != member && other.bounds.contains(at)) largest = max(largest, value(tree_, p, other.record));
+  return largest;
+}
+
+// use(tree, record) of what is equal to the member at p.
+template <class Use>
+auto TreeTracer::with_field_near(const Cell& cell, const Vec3d& p, const Use& use) const {
+  const bool is_near = cell.part != nullptr && cell.part->holds(p);
+  return is_near ? use(cell.part->leaf_at(p).tree(), FieldTree::whole) : use(tree_, cell.member);
+}
+
+// The shortest of growing steps after which the field is certainly below 1, as far as sums over points are off from it
+// (field/tree/README.md). Where no bounds tell that within a thousandth of the cell, the shortest after which what is
+// summed is certainly below 1, or is so by more than `likely`.
+std::optional<Vec3d> TreeTracer::outside_along(const Cell& c, const Vec3d& position, const Vec3d& direction,
+                                               double likely) const {
+  constexpr double longest = 1e-3, rounding_of_sums = 1e-12, error_of_sums = 2e-7;
+  const double off = c.part != nullptr ? error_of_sums : rounding_of_sums;
+  std::optional<Vec3d> summed;
+  const double shortest = 4 * rounding::ulp * std::max(largest_coordinate(c.box), c.box.size().x);
+  for (double step = shortest; step < std::max(longest * c.box.size().x, 64 * shortest); step *= 4) {
+    const Vec3d p = position + direction * step;
+    const auto field_at = [&]<Number X>(const Vec3<X>& there) {
+      const auto own = [&](const FieldTree& tree, std::uint32_t record) { return value(tree, there, record); };
+      return max(with_field_near(c, p, own), largest_of_others(c.member, there));
+    };
+    const Interval enclosed = field_at(Vec3<Interval>{Interval(p.x), Interval(p.y), Interval(p.z)});
+    if (enclosed.hi < 1 - off) return p;
+    if (summed) continue;
+    if (enclosed.hi < 1 - rounding_of_sums || (enclosed.lo < 1 && field_at(p) < 1 - likely)) summed = p;
+  }
+  return summed;
+}
+
+SurfacePoint TreeTracer::surface_at(std::size_t cell, const Vec3d& position, const Vec3d& along) const {
+  using X = Jet<double, 3>;
+  const Cell& c = cells_[cell];
+  const Vec3<X> at{X::variable(position.x, 0), X::variable(position.y, 1), X::variable(position.z, 2)};
+  const X f = with_field_near(c, position,
+                              [&](const FieldTree& tree, std::uint32_t record) { return value(tree, at, record); });
+  const X others = largest_of_others(c.member, at);
+  const auto outward = [](const X& g) { return normalize(Vec3d{-g.slope[0], -g.slope[1], -g.slope[2]}); };
+  const UnitVec3 normal = outward(f);
+  // Beside another member: away from both, or from one and back.
+  const Vec3d away = others.value > 0 ? outward(others).vec() : normal.vec();
+  const Vec3d ways[] = {normal, normal.vec() + away, -along, away - along, normal.vec() - along, along};
+  for (const double likely : {1e-6, 1e-13})  // more than sums are off; no more than rounding
+    for (const Vec3d& way : ways)
+      if (const auto outside = outside_along(c, position, way, likely))
+        return {.normal = normal, .outside = *outside, .around = {}};
+  // At an edge of a face in whose plane the ray runs, all these ways may lie in it: aslant to all sides.
+  const Frame frame = Frame::around(normal);
+  for (const double x : {-1, 0, 1})
+    for (const double y : {-1, 0, 1})
+      if (const auto outside = outside_along(c, position, frame.to_world({x, y, 1}), 1e-13))
+        return {.normal = normal, .outside = *outside, .around = {}};
+  return {.normal = normal, .outside = position, .around = {}};
+}
+
+MaterialId TreeTracer::material_at(std::size_t cell, const Vec3d& position) const {
+  return with_field_near(cells_[cell], position, [&](const FieldTree& tree, std::uint32_t record) {
+    return strongest_material(tree, position, record);
+  });
+}
+
+std::size_t TreeTracer::bytes() const {
+  std::size_t bytes = cells_.capacity() * sizeof(Cell) + bytes_of(tree_);
+  for (const auto& root : roots_) bytes += root->bytes();
+  return bytes;
+}
+
+}  // namespace marrow

@@ -1,0 +1,13 @@
+// The block kernels compiled for avx2 (see field/trace/CMakeLists.txt for its compiler options).
+#include <type_traits>
+
+#include "field/trace/kernels/block_kernels.h"
+
+namespace marrow::avx2 {
+namespace {
+#include "field/trace/kernels/all.h"
+}  // namespace
+
+const BlockKernels& table() { return all_kernels; }
+
+}  // namespace marrow::avx2
