@@ -37,11 +37,13 @@ inline double distance_to(std::span<const Singularity> singularities, double beg
 
 /// Calls visit(Panel) for panels that cover [begin, end], each at least 0.8 times its length away from every
 /// singularity and at most `longest` long, by bisection; from 0 outward where 0 is inside, so that panels may shrink
-/// below the resolution of begin and end there. Gives up on a singularity of the interval itself after 100 halvings.
+/// below the resolution of begin and end there. Gives up on a singularity of the interval itself after 100 halvings, or
+/// where squares of lengths are no normal numbers any more, so that all distances are 0.
 template <class Visit>
 void for_each_panel(double begin, double end, std::span<const Singularity> singularities, double longest,
                     const Visit& visit) {
   constexpr std::size_t deepest = 100;
+  constexpr double shortest = 0x1p-511;
   struct Piece {
     double begin, end;
     std::size_t depth;
@@ -57,7 +59,7 @@ void for_each_panel(double begin, double end, std::span<const Singularity> singu
   while (count > 0) {
     const auto [a, b, depth] = open[--count];
     const double length = b - a, distance = distance_to(singularities, a, b);
-    if (depth == deepest || (length <= longest && panel_distance_20 * length <= distance)) {
+    if (depth == deepest || length <= shortest || (length <= longest && panel_distance_20 * length <= distance)) {
       visit(Panel{a, length, distance});
     } else {
       const double half = a + length / 2;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "field/kernel/inverse_family.h"
 #include "field/kernel/power_integrals.h"
@@ -97,7 +98,8 @@ void add_panel(const SegmentView& view, double begin, double length, double dist
   else add_rule<Order, 20>(view, begin, length, n, dimension, sum);
 }
 
-// Panels from `near` to `far`, where |t| grows; each is as long as its distance from the point allows.
+// Panels from `near` to `far`, where |t| grows; each is as long as its distance from the point allows. Nearer to the
+// line than squares can tell (1e-162) the value is infinite, and nothing else counts.
 template <Derivatives Order>
 void add_graded_panels(const SegmentView& view, double near, double far, int n, int dimension, SegmentMoments& sum) {
   const double direction = far < near ? -1 : 1;
@@ -105,6 +107,10 @@ void add_graded_panels(const SegmentView& view, double near, double far, int n, 
   while (rest > 0) {
     const double distance = std::sqrt(begin * begin + view.h_squared);
     const double length = std::min(rest, distance / distance_for_20);
+    if (!(length > 0)) {
+      sum.value = std::numeric_limits<double>::infinity();
+      return;
+    }
     if (direction > 0) add_panel<Order>(view, begin, length, distance, n, dimension, sum);
     else add_panel<Order>(view, begin - length, length, distance, n, dimension, sum);
     begin += direction * length;

@@ -104,5 +104,27 @@ TEST(Extremes, NothingIsEverNotANumber) {
   }
 }
 
+// Squares of such distances are 0, or hold a few bits.
+TEST(Extremes, PlacesBesideAnEndByHardlyAnythingAreOnTheSkeleton) {
+  Random random(702);
+  for (const double off : {5e-324, 1e-310, 1e-200, 1e-162, 1e-155, 1e-100}) {
+    for (int degree = 3; degree <= 20; ++degree) {
+      BlendField blend;
+      blend.degree = degree;
+      const Vec3d to = random.vector(1);
+      const double thin = degree % 2 == 0 ? 0.1 : 0.05;
+      blend.segments.add({{0, 0, 0}, to, 0.1, thin}, {});
+      if (degree == 3) blend.cani_hornus_segments.add({{0, 0, 0}, to, 0.1, thin}, {});
+      if (degree <= 6) blend.triangles.add({{Vec3d{0, 0, 0}, to, random.vector(1)}, {0.1, 0.1, thin}}, {});
+      for (const Vec3d& way : {to, to * -1.0, random.vector(1), Vec3d{1, 0, 0}, Vec3d{-1, 0, 0}}) {
+        const BlendSample s = evaluate(blend, way * off);
+        EXPECT_GT(s.corrected, 1e20) << off << " degree " << degree;
+        EXPECT_FALSE(std::isnan(s.corrected) || std::isnan(s.alpha)) << off << " degree " << degree;
+        EXPECT_TRUE(is_number(s.corrected_gradient)) << off << " degree " << degree;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace marrow
