@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -89,9 +90,9 @@ Box3 FieldSolid::to_world(const Box3& local) const {
 FieldSolid::LocalRay FieldSolid::to_local(const Ray& ray) const {
   if (in_world_) return {ray, 1};
   const Vec3d direction = local_from_world_.vector(ray.direction);
-  const double stretch = length(direction);
+  const double stretch = length(direction), end = ray.t_max * stretch;
   return {{local_from_world_.point(ray.origin), UnitVec3::unchecked(direction / stretch), ray.t_min * stretch,
-           ray.t_max * (stretch * (1 + 0x1p-50)), ray.around},
+           end + std::fabs(end) * 0x1p-50, ray.around},
           stretch};
 }
 

@@ -72,7 +72,7 @@ TEST(EmbreeSurfaces, EqualsBruteForce) {
   afar.report("seen from 1e5");
 }
 
-// To the last bit, although t is another one in the blend's own coordinates.
+// To the last bit, although t is another one in the blend's own coordinates; also behind the origin of the ray.
 void expect_limits_kept(const SolidScene& scene, Ray ray, double t) {
   ray.t_max = t;
   const auto there = scene.surfaces().first_hit(ray);
@@ -80,6 +80,16 @@ void expect_limits_kept(const SolidScene& scene, Ray ray, double t) {
   EXPECT_EQ(there->t, t);
   ray.t_max = std::nextafter(t, 0.0);
   EXPECT_FALSE(scene.surfaces().first_hit(ray));
+  Ray behind = ray;
+  behind.origin = ray.at(2 * t);
+  behind.t_min = ray.t_min - 2 * t;
+  behind.t_max = -0.5 * t;
+  const auto hit = scene.surfaces().first_hit(behind);
+  ASSERT_TRUE(hit);
+  behind.t_max = hit->t;
+  const auto again = scene.surfaces().first_hit(behind);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->t, hit->t);
 }
 
 // Non-uniform scale, shear and rotation stay above the blend; its rays are mapped.
