@@ -190,6 +190,44 @@ TEST(Strands, PatchesTellTheShareOfRandomScenes) {
             << "\n";
 }
 
+// A thick strand beside a thin one far away, whose field is small in floats or vanishes there: alpha is that of the
+// pair all the same.
+TEST(Strands, OfWeakOthersTellTheAngle) {
+  Random random(96);
+  struct Pair {
+    int degree;
+    double distance, thin;
+  };
+  for (const auto& [degree, distance, thin] : {Pair{4, 3, 0.05}, Pair{6, 10, 0.001}, Pair{8, 10, 0.002},
+                                               Pair{12, 10, 0.01}, Pair{12, 100, 0.001}, Pair{20, 20, 0.01}}) {
+    BlendField blend = random_scene(random, {degree, 1}, 0);
+    const auto add = [&](const Vec3d& middle, const Vec3d& half, double radius) {
+      blend.segments.strands.push_back(static_cast<std::uint32_t>(blend.direction_bounds.size()));
+      blend.segments.add({middle - half, middle + half, radius, radius}, {});
+      blend.direction_bounds.push_back(bounds);
+    };
+    add({0, 0, 0}, {0.05, 0, 0}, 0.1);
+    add(random_direction(random) * distance, normalize(Vec3d{1, 0.2, 0}).vec() * (2 * thin), thin);
+    const Crowd crowd(std::move(blend));
+    int places = 0;
+    double largest = 0;
+    for (std::size_t i = 0; i < crowd.stage.cells.size(); ++i) {
+      const Block block(crowd.context, crowd.stage.cells[i]);
+      if (length(block.center()) > 0.5) continue;
+      for (int k = 0; k < 20; ++k) {
+        const Vec3d x = random.vector(1);
+        const BlendSample exact = evaluate(crowd.stage.field, block.center() + x * block.half());
+        if (std::fabs(exact.corrected - 1) > 0.2) continue;
+        ++places;
+        largest = std::max(largest, std::fabs(block.share(x).share - exact_share(crowd, exact)));
+      }
+    }
+    std::cout << "  degree " << degree << ": " << places << " places, shares are off by " << largest << " at most\n";
+    EXPECT_GT(places, 10);
+    EXPECT_LT(largest, 3e-5) << "degree " << degree << " distance " << distance << " radius " << thin;
+  }
+}
+
 // The faces of a small cube differ as the slopes in its middle say.
 TEST(Strands, SharesChangeByTheirSlopes) {
   Random random(93);

@@ -179,10 +179,11 @@ const SharePart& Block::part(int path) const {
   // most_strands as long they would take 440.
   constexpr std::size_t most_bytes = std::size_t{64} << 20;
   thread_local LevelCache<1024> cache(most_bytes);
-  return patches_->at(path, context_.kernels, context_.degree, [&]() -> const BlockLevel& {
-    return cache.get(serial_, [&](LevelBuffer& buffer) {
+  return patches_->at(path, [&](const float(&center)[3], float half, StrandShares& found) {
+    const BlockLevel& strands = cache.get(serial_, [&](LevelBuffer& buffer) {
       return write_stranded_level(make_stranded_level(context_, cell_), in(buffer));
     });
+    return find_shares(context_, cell_, strands, center, half, found);
   });
 }
 

@@ -63,7 +63,7 @@ const CompactLevel& compact_level(LevelKind kind, const Block::Context& context,
       add_nodes(piece, 1, cell.center, cell.half, context.degree, parts.points);
       continue;
     }
-    rules.find(piece, [&](const Piece& part, int nodes) {
+    rules.find(piece, 1, [&](const Piece& part, int nodes) {
       parts.curves.push_back(curve_piece(part, nodes, cell.center, cell.half, context.degree));
     });
   }

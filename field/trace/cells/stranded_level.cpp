@@ -5,6 +5,8 @@
 #include <new>
 #include <utility>
 
+#include "field/trace/kernels/strand_places.h"
+#include "field/trace/levels/level_buffer.h"
 #include "field/trace/sources/source_emitter.h"
 
 namespace marrow {
@@ -18,8 +20,8 @@ StrandedLevel make_stranded_level(const Block::Context& context, const CellTree:
                     .directions = {}};
   SourceEmitter emitter(context.cutter, context.fine, cell.center, cell.half);
   int lanes_told = 0;
-  const auto emit = [&](std::uint32_t piece) {
-    emitter.emit(context.pieces[piece]);
+  const auto emit = [&](std::uint32_t piece, double share) {
+    emitter.emit(context.pieces[piece], share);
     const Vec3d u = strands.direction(piece);
     out.directions.resize(static_cast<std::size_t>(emitter.curves.group_count()) * 3 * lanes);
     for (; lanes_told < emitter.curves.count(); ++lanes_told)
@@ -27,9 +29,15 @@ StrandedLevel make_stranded_level(const Block::Context& context, const CellTree:
         out.directions[static_cast<std::size_t>(lanes_told / lanes * 3 * lanes + lanes_told % lanes) + k * lanes] =
             static_cast<float>(u[k]);
   };
-  for (const NearStrand& strand : out.seen.near) {
+  // What the strongest is off turns it by as little as it is off over itself; all others count over each other.
+  const double of_others = std::min(1.0, Strands::budget_of(out.seen.view) / context.fine.budget().field);
+  for (std::size_t i = 0; i < out.seen.near.size(); ++i) {
+    const NearStrand& strand = out.seen.near[i];
+    const bool is_strongest = out.seen.view.near[i] == out.seen.view.strongest;
     const int before = emitter.curves.group_count();
-    for (const std::uint32_t piece : strand.listed) emit(piece);
+    const double error = emitter.rules.f_error;
+    for (const std::uint32_t piece : strand.listed) emit(piece, is_strongest ? 1 : of_others);
+    if (!is_strongest) out.seen.view.error += emitter.rules.f_error - error;
     emitter.curves.end_group();
     lanes_told = emitter.curves.count();
     out.groups.push_back(emitter.curves.group_count() - before);
@@ -58,13 +66,45 @@ BlockLevel write_stranded_level(const StrandedLevel& from, const Allocate& alloc
       for (std::size_t k = 0; k < 4; ++k) rest[m * row + k * stride + i] = seen.near[i].rest[4 * m + k];
   auto* const groups = reinterpret_cast<int*>(rest + quadratic_monomials * row);
   std::uninitialized_copy(from.groups.begin(), from.groups.end(), groups);
-  auto* const reference = new (rest + quadratic_monomials * row + stride) StrandLevel{
-      .directions = directions, .groups = groups, .rest = rest, .count = static_cast<int>(count), .far = far};
+  auto* const reference = new (rest + quadratic_monomials * row + stride) StrandLevel{.directions = directions,
+                                                                                      .groups = groups,
+                                                                                      .rest = rest,
+                                                                                      .count = static_cast<int>(count),
+                                                                                      .far = far,
+                                                                                      .is_weak = seen.is_weak};
   BlockLevel out;
   out.level = write_sources(from.curves, from.points, at);
-  out.angle_error = seen.view.error;
+  out.angle_error = seen.view.share_error();
   out.level.strands = reference;
   return out;
+}
+
+namespace {
+
+// Of this thread, for as many strands as any level had.
+float* memory_for(int strands) {
+  thread_local LevelBuffer buffer;
+  return buffer.allocate(static_cast<std::size_t>(strands) * floats_per_strand);
+}
+
+}  // namespace
+
+double find_shares(const Block::Context& context, const CellTree::Cell& cell, const BlockLevel& from,
+                   const float (&center)[3], float half, StrandShares& found) {
+  const StrandLevel& strands = *from.level.strands;
+  if (!strands.is_weak) {
+    context.kernels.strand_shares(from.level, context.degree, center, half, memory_for(strands.count), found);
+    return from.angle_error;
+  }
+  found = {};
+  for (std::size_t k = 0; k < strand_places; ++k) {
+    const Vec3d at{static_cast<double>(center[0]), static_cast<double>(center[1]), static_cast<double>(center[2])};
+    const Vec3d place = at + place_in_cube(k) * static_cast<double>(half);
+    const ShareSample share = context.strands->exact_share(cell.center + place * cell.half);
+    found.share[k] = static_cast<float>(share.value);
+    for (std::size_t e = 0; e < 3; ++e) found.slope[e][k] = static_cast<float>(share.gradient[e] * cell.half);
+  }
+  return 0;
 }
 
 }  // namespace marrow

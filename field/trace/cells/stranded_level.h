@@ -22,5 +22,9 @@ StrandedLevel make_stranded_level(const Block::Context&, const CellTree::Cell&);
 
 /// Without far polynomials: of its level kernels find shares alone.
 BlockLevel write_stranded_level(const StrandedLevel&, const Allocate&);
+/// The shares at strand_place of a cube in the coordinates of the block, by such a level; or, where that is weak, by
+/// the blend itself. Returns what they may be off.
+double find_shares(const Block::Context&, const CellTree::Cell&, const BlockLevel&, const float (&center)[3],
+                   float half, StrandShares&);
 
 }  // namespace marrow

@@ -23,6 +23,13 @@ constexpr int nodes_per_piece = 2;  // of pieces that do not count one by one
 // What comes nearer, in radii of the cube, counts one by one in any case: the series of what a quadratic leaves out
 // begins with what is told of it.
 constexpr double largest_ratio = 0.35;
+// What the field of all strands but the strongest, which is some 1 near the surface, must be for floats: they end at
+// 1e-38, and over a cell fields change by some powers of ten. At degree 20 that is 30 radii away.
+constexpr double weakest = 1e-30;
+// Of the share of angles: what all strands together may cause that the tiles around have folded, by an estimate that is
+// some 20 times what it is off. 1e-4 instead took a first picture of 10,000 hairs 1.18 times as long as no limit, 5e-4
+// 1.1 times.
+constexpr double most_inherited = 1e-3;
 
 }  // namespace
 
@@ -38,7 +45,7 @@ struct Strands::Seen {
 };
 
 Strands::Strands(const BlendField& blend, std::span<const Piece> pieces, const BlockKernels& kernels)
-    : pieces_(pieces), kernels_(kernels), degree_(blend.degree) {
+    : blend_(blend), pieces_(pieces), kernels_(kernels), degree_(blend.degree) {
   strands_.resize(blend.direction_bounds.size());
   strand_of_.resize(pieces.size());
   first_node_.resize(pieces.size());
@@ -65,6 +72,7 @@ Strands::Strands(const BlendField& blend, std::span<const Piece> pieces, const B
     s.count = static_cast<int>(groups_.size() - s.first);
     s.pieces = std::move(members[k]);
   }
+  is_alone_ = std::ranges::count_if(strands_, [](const Strand& s) { return s.count > 0; }) < 2;
 }
 
 Vec3d Strands::direction(std::uint32_t piece) const {
@@ -131,19 +139,16 @@ double error_of(const StrandInMiddle& s) {
   return std::isfinite(s.error) ? static_cast<double>(s.error) : std::numeric_limits<double>::max();
 }
 
-// alpha is a mean over pairs, and what one strand may be off counts against the field of all strands but the strongest.
-double share_error(const StrandInMiddle& s, double others) { return others > 0 ? error_of(s) / others : 0; }
-
-// The field of all strands but the strongest, given that of those that are folded already.
+// The strongest strand, and the field of all others, given that of those that are folded already.
 template <class Seen>
-double field_of_others(const std::vector<Seen>& seen, double folded) {
-  double sum = folded, strongest = folded;
+void find_others(const std::vector<Seen>& seen, double folded, StrandView& view) {
+  double strongest = folded;
   for (const Seen& s : seen) {
     const double f = std::min(1.0, static_cast<double>(s.middle.field));
-    sum += f;
-    strongest = std::max(strongest, f);
+    view.others += std::min(f, strongest);  // a difference of sums would be 0 where they are weak
+    if (f > strongest) view.strongest = s.strand;
+    strongest = std::max(f, strongest);
   }
-  return sum - strongest;
 }
 
 }  // namespace
@@ -160,18 +165,20 @@ std::vector<bool> Strands::forced(const std::vector<Seen>& seen, std::size_t mos
   return chosen;
 }
 
-// Folds what is far.
-StrandView Strands::fold(const std::vector<Seen>& seen, const Cube& cube, const StrandView* parent,
-                         const Cube& parent_cube, std::size_t most, std::vector<float>& values) const {
+// Folds what is far, beside what the tile has folded.
+StrandView Strands::fold(const std::vector<Seen>& seen, const Cube& cube, const Tile* from, std::size_t most,
+                         std::vector<float>& values) const {
   StrandView view;
   values.assign(static_cast<std::size_t>(strand_places) * tensor_floats, 0.0F);
-  if (parent != nullptr) {
+  if (from != nullptr) {
+    const StrandView& outer = around(*from);
+    const Cube outer_cube{from->place().center, from->place().half};
     for (std::size_t k = 0; k < strand_places; ++k)
-      add_quadratics(parent->far.data(), tensor_floats, (cube.place(k) - parent_cube.center) / parent_cube.half,
+      add_quadratics(outer.far.data(), tensor_floats, (cube.place(k) - outer_cube.center) / outer_cube.half,
                      values.data() + k * tensor_floats);
-    view.error = parent->error;
+    view.error = outer.error;
   }
-  view.others = field_of_others(seen, std::max(0.0, static_cast<double>(values[sum_of_f])));
+  find_others(seen, std::max(0.0, static_cast<double>(values[sum_of_f])), view);
   const std::vector<bool> must = forced(seen, most);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const auto& [strand, middle] = seen[i];
@@ -182,28 +189,41 @@ StrandView Strands::fold(const std::vector<Seen>& seen, const Cube& cube, const 
     StrandSamples samples;
     kernels_.strand_samples(query(strand, cube), samples);
     kernels_.add_strand(samples, values.data());
-    view.error += share_error(middle, view.others);
+    view.error += error_of(middle);
   }
   view.far.resize(static_cast<std::size_t>(quadratic_monomials) * tensor_floats);
   fit_quadratics(values.data(), tensor_floats, view.far.data());
   return view;
 }
 
+std::vector<Strands::Seen> Strands::seen_from(const Cube& cube, const StrandView* parent) const {
+  std::vector<Seen> seen;
+  if (parent != nullptr) {
+    for (const std::uint32_t s : parent->near) seen.push_back(see(s, cube));
+  } else {
+    for (std::uint32_t s = 0; s < strands_.size(); ++s)
+      if (strands_[s].count > 0) seen.push_back(see(s, cube));
+  }
+  return seen;
+}
+
+// From the smallest tile that has folded nothing that counts here: a tile judges by its middle, where other strands may
+// be much stronger.
+StrandView Strands::view_of(const Cube& cube, const Tile* around_it, std::size_t most,
+                            std::vector<float>& values) const {
+  for (const Tile* from = around_it;; from = from->place().parent) {
+    const StrandView* outer = from != nullptr ? &around(*from) : nullptr;
+    StrandView view = fold(seen_from(cube, outer), cube, from, most, values);
+    if (outer == nullptr || outer->error <= most_inherited * view.others) return view;
+  }
+}
+
 const StrandView& Strands::around(const Tile& tile) const {
   return tile.strands().get([&] {
     const TilePlace& place = tile.place();
-    const Cube cube{place.center, place.half};
-    std::vector<Seen> seen;
-    const StrandView* parent = place.parent != nullptr ? &around(*place.parent) : nullptr;
-    if (parent != nullptr) {
-      for (const std::uint32_t s : parent->near) seen.push_back(see(s, cube));
-    } else {
-      for (std::uint32_t s = 0; s < strands_.size(); ++s)
-        if (strands_[s].count > 0) seen.push_back(see(s, cube));
-    }
-    const Cube outer = parent != nullptr ? Cube{place.parent->place().center, place.parent->place().half} : cube;
     std::vector<float> values;
-    return std::make_unique<const StrandView>(fold(seen, cube, parent, outer, seen.size(), values));
+    return std::make_unique<const StrandView>(
+        view_of({place.center, place.half}, place.parent, std::numeric_limits<std::size_t>::max(), values));
   });
 }
 
@@ -243,22 +263,27 @@ NearStrand Strands::divided(std::uint32_t strand, const Cube& cube, StrandView& 
   StrandSamples samples;
   kernels_.strand_samples(q, samples);
   fit_quadratics(samples.sums[0], 4, out.rest);
-  view.error += share_error(far, view.others);
+  view.error += error_of(far);
   return out;
 }
 
 CellStrands Strands::around(const Tile& tile, const Vec3d& center, double half) const {
-  const StrandView& parent = around(tile);
   const Cube cube{center, half};
-  std::vector<Seen> seen;
-  for (const std::uint32_t s : parent.near) seen.push_back(see(s, cube));
   std::vector<float> values;
-  CellStrands cell{.view = fold(seen, cube, &parent, {tile.place().center, tile.place().half}, most_strands, values),
-                   .near = {},
-                   .far = {}};
+  CellStrands cell{.view = view_of(cube, &tile, most_strands, values), .near = {}, .far = {}};
+  cell.is_weak = cell.view.others < weakest && !is_alone_;
   for (const std::uint32_t strand : cell.view.near) cell.near.push_back(divided(strand, cube, cell.view));
   cell.far = far_rows(cell.view.far, values);
   return cell;
+}
+
+double Strands::budget_of(const StrandView& view) { return budget * view.others; }
+
+ShareSample Strands::exact_share(const Vec3d& p) const {
+  const DirectionBounds range = blend_.direction_bounds.front();
+  const double width = range.most - range.least;
+  const AlphaSample alpha = alpha_at(blend_, p);
+  return {std::clamp((alpha.value - range.least) / width, 0.0, 1.0), alpha.gradient / width};
 }
 
 }  // namespace marrow

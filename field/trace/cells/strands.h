@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -27,7 +28,11 @@ struct StrandView {
   std::vector<std::uint32_t> near;  ///< those that count one by one
   std::vector<float> far;           ///< all others: tensor_floats for each monomial, in the coordinates of the cube
   double others = 0;                ///< the field of all strands but the strongest in its middle
-  double error = 0;                 ///< of the share of angles, because of quadratics: an estimate
+  std::size_t strongest = std::numeric_limits<std::size_t>::max();  ///< that one, if it counts one by one
+  double error = 0;  ///< of the fields of strands, because of quadratics: an estimate
+
+  /// alpha is a mean over pairs, and what one strand is off counts against the field of all but the strongest.
+  double share_error() const { return others > 0 ? error / others : 0; }
 };
 
 /// A near strand in a cell.
@@ -41,12 +46,19 @@ struct CellStrands {
   StrandView view;
   std::vector<NearStrand> near;  ///< view.near, in its order
   std::vector<float> far;        ///< StrandLevel::far
+  bool is_weak = false;          ///< StrandLevel::is_weak
+};
+
+/// The share of the range of angles at a place, and its gradient.
+struct ShareSample {
+  double value = 0;
+  Vec3d gradient;
 };
 
 /// Immutable; safe to use from many threads.
 class Strands {
  public:
-  /// `pieces` in the order of the tree, whose indices are used. No point is of the strand of others.
+  /// `pieces` in the order of the tree, whose indices are used. No point is of the strand of others. Refers to both.
   Strands(const BlendField&, std::span<const Piece> pieces, const BlockKernels&);
 
   /// Of the segment that a piece is part of; 0 of a point.
@@ -54,6 +66,11 @@ class Strands {
 
   /// What the cell with this middle and half side sees, which lies in the tile; lengths in those of the blend.
   CellStrands around(const Tile&, const Vec3d& center, double half) const;
+
+  /// Of the field of each other strand what one piece may be off.
+  static double budget_of(const StrandView&);
+  /// By all primitives, in double.
+  ShareSample exact_share(const Vec3d& p) const;
 
  private:
   struct Strand {
@@ -73,18 +90,22 @@ class Strands {
 
   void add_nodes(const Piece&, std::uint32_t index, int& lane);
   const StrandView& around(const Tile&) const;
+  StrandView view_of(const Cube&, const Tile* around, std::size_t most, std::vector<float>& values) const;
+  std::vector<Seen> seen_from(const Cube&, const StrandView* parent) const;
   StrandQuery query(std::uint32_t strand, const Cube&) const;
   Seen see(std::uint32_t strand, const Cube&) const;
   static std::vector<bool> forced(const std::vector<Seen>&, std::size_t most);
   // Leaves at most `most` to count one by one. `values`: of the tensor, at the places of the cube.
-  StrandView fold(const std::vector<Seen>&, const Cube&, const StrandView* parent, const Cube& parent_cube,
-                  std::size_t most, std::vector<float>& values) const;
+  StrandView fold(const std::vector<Seen>&, const Cube&, const Tile* from, std::size_t most,
+                  std::vector<float>& values) const;
   // Adds what the rest is off to the error of the view.
   NearStrand divided(std::uint32_t strand, const Cube&, StrandView&) const;
 
+  const BlendField& blend_;
   std::span<const Piece> pieces_;
   const BlockKernels& kernels_;
   int degree_;
+  bool is_alone_ = true;                               // there are no two strands
   std::vector<std::uint32_t> strand_of_, first_node_;  // of each piece; the lane of its first node in its strand
   std::vector<Strand> strands_;
   std::vector<Group> groups_;

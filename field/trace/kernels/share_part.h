@@ -17,8 +17,9 @@ struct alignas(64) SharePatch {
 inline constexpr int floats_per_patch = sizeof(SharePatch) / sizeof(float);
 
 /// A part of a block, for which there is one patch, or eight smaller parts: an octant of the block, of one of those,
-/// and so on to the octants of slots. Parts of one cube follow each other by their octants, x the lowest bit. What runs
-/// need of a patch is here, so that they find it where they find out that there is one.
+/// and so on to 1/128 of its side: blocks may be as large as 12 radii. Parts of one cube follow each other by their
+/// octants, x the lowest bit. What runs need of a patch is here, so that they find it where they find out that there is
+/// one.
 struct alignas(32) SharePart {
   /// Of the patch; one more than that of the first of eight parts; or 0 where neither is made yet. The rest may be
   /// read once this is set; of eight parts only `bent` means anything.
@@ -30,7 +31,7 @@ struct alignas(32) SharePart {
 
   static constexpr std::uintptr_t divided = 1;
   /// From the block to the smallest parts, of which there are so many along each axis.
-  static constexpr int halvings = 4, layers = 1 << halvings;
+  static constexpr int halvings = 7, layers = 1 << halvings;
   /// Of the first octant of a path to a smallest part: the octants that hold it, the largest cube's in the highest
   /// bits.
   static constexpr int root_shift = 3 * (halvings - 1);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "field/trace/kernels/strand_places.h"
-#include "field/trace/levels/level_buffer.h"
 #include "field/trace/sources/far_field.h"
 
 namespace marrow {
@@ -85,17 +84,9 @@ struct ShareFit {
 
 using Data = ShareFit::Data;
 
-// Of this thread, for as many strands as any level had.
-float* memory_for(int strands) {
-  thread_local LevelBuffer buffer;
-  return buffer.allocate(static_cast<std::size_t>(strands) * floats_per_strand);
-}
-
-Data data_of(const BlockKernels& kernels, int degree, const FieldLevel& level, const SharePatch& patch) {
+Data data_of(const StrandShares& shares, const SharePatch& patch) {
   Data data{};
   const float half = 1 / patch.inverse_half;
-  StrandShares shares;
-  kernels.strand_shares(level, degree, patch.center, half, memory_for(level.strands->count), shares);
   for (std::size_t k = 0; k < strand_places; ++k) {
     bool finite = std::isfinite(shares.share[k]);
     for (const auto& slope : shares.slope) finite = finite && std::isfinite(slope[k]);
@@ -108,8 +99,8 @@ Data data_of(const BlockKernels& kernels, int degree, const FieldLevel& level, c
 
 }  // namespace
 
-double fit_share(const BlockKernels& kernels, int degree, const FieldLevel& strands, SharePatch& patch) {
-  const Data data = data_of(kernels, degree, strands, patch);
+double fit_share(const StrandShares& shares, SharePatch& patch) {
+  const Data data = data_of(shares, patch);
   static const ShareFit fit;
   ShareFit::Row sum{};
   for (std::size_t i = 0; i < data_count; ++i)

@@ -7,8 +7,8 @@
 namespace marrow {
 
 /// Least squares of values and slopes at strand_place of the cube of a patch, whose `center` and `inverse_half` say
-/// where that is in the block; sets its coefficients. `strands`: a level with strands, of this degree of the kernel.
+/// where that is in the block; sets its coefficients.
 /// Returns the largest residual, of the share, or of its slopes over half sides of the cube, which count less.
-double fit_share(const BlockKernels&, int degree, const FieldLevel& strands, SharePatch&);
+double fit_share(const StrandShares&, SharePatch&);
 
 }  // namespace marrow

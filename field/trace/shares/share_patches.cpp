@@ -61,16 +61,29 @@ std::uintptr_t SharePatches::divide(float residual, SharePart& to) const {
   return keep(part, std::move(parts), to);
 }
 
-std::uintptr_t SharePatches::fit_or_divide(const BlockKernels& kernels, int degree, const BlockLevel& strands, int path,
-                                           int shift, SharePart& to) const {
+const SharePart& SharePatches::at(int path, const Find& find) const {
+  Eight* eight = &octants_;
+  float off = 0;  // of the part around
+  for (int shift = SharePart::root_shift;; shift -= 3) {
+    SharePart& part = eight->parts[static_cast<std::size_t>(path >> shift & 7)];
+    std::uintptr_t address = address_of(part);
+    if (address == 0) address = shift > 0 && is_far_off(off) ? divide(0, part) : fit_or_divide(find, path, shift, part);
+    if ((address & SharePart::divided) == 0) return part;
+    eight = parts_at(address);
+    off = part.bent;
+  }
+}
+
+std::uintptr_t SharePatches::fit_or_divide(const Find& find, int path, int shift, SharePart& to) const {
   auto made = std::make_unique<SharePatch>();
   SharePatch& patch = *made;
   const Cube cube = cube_of(path, shift);
   patch.inverse_half = 1 / cube.half;
   for (int k = 0; k < 3; ++k) patch.center[k] = cube.center[k];
-  const double residual = fit_share(kernels, degree, strands.level, patch);
+  StrandShares shares;
+  const double error = find(patch.center, cube.half, shares), residual = fit_share(shares, patch);
   if (shift > 0 && residual > largest_residual) return divide(static_cast<float>(residual), to);
-  patch.error = static_cast<float>(strands.angle_error + 2 * residual);  // it is off by more between places
+  patch.error = static_cast<float>(error + 2 * residual);  // it is off by more between places
   SharePart part{.address = reinterpret_cast<std::uintptr_t>(made.get()), .half = cube.half};
   set_line(patch, part);
   patch.bend = bend_of(patch);

@@ -2,7 +2,7 @@
 //
 // What strands.h tells of a place is fitted by polynomials, and these are what is traced: their bounds along a ray are
 // exact, they cost little, and the coarse level can use lines beside them. The parts are octants of the block, or
-// octants of octants, down to those of slots, where the fit is not good enough, or would not be by what that of the
+// octants of octants, down to 1/128 of its side, where the fit is not good enough, or would not be by what that of the
 // larger part is off; each is made when the first ray comes by, and is a function of the block alone.
 #pragma once
 
@@ -10,12 +10,12 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 
 #include "field/trace/kernels/block_kernels.h"
 #include "field/trace/kernels/share_part.h"
-#include "field/trace/levels/block_level.h"
 
 namespace marrow {
 
@@ -27,10 +27,10 @@ class SharePatches {
   SharePatches& operator=(const SharePatches&) = delete;
   ~SharePatches() { free_all(octants_); }
 
-  /// The part that holds a smallest one, which has a patch. `strands()` is the level of stranded_level.h; it is asked
-  /// for when a patch is made.
-  template <class Strands>
-  const SharePart& at(int path, const BlockKernels& kernels, int degree, const Strands& strands) const;
+  /// What strands tell of strand_place of a cube; returns what that may be off.
+  using Find = std::function<double(const float (&center)[3], float half, StrandShares&)>;
+  /// The part that holds a smallest one, which has a patch. `find` is asked when one is made.
+  const SharePart& at(int path, const Find& find) const;
 
   const SharePart* octants() const { return octants_.parts.data(); }
   static const SharePatch& patch_of(const SharePart& part) { return *patch_at(part.address); }
@@ -55,8 +55,7 @@ class SharePatches {
   // These return the address that the part then has. `residual`: SharePart::bent.
   std::uintptr_t divide(float residual, SharePart& to) const;
   // Makes a patch, or divides the part where one does not do.
-  std::uintptr_t fit_or_divide(const BlockKernels&, int degree, const BlockLevel& strands, int path, int shift,
-                               SharePart& to) const;
+  std::uintptr_t fit_or_divide(const Find&, int path, int shift, SharePart& to) const;
   // Whether hardly an octant has a patch that does, where that of the whole part is off by so much.
   static bool is_far_off(float residual);
   template <class T>
@@ -67,21 +66,5 @@ class SharePatches {
   mutable std::atomic<std::size_t> bytes_ = 0;
   mutable std::atomic<float> error_ = 0;
 };
-
-template <class Strands>
-const SharePart& SharePatches::at(int path, const BlockKernels& kernels, int degree, const Strands& strands) const {
-  Eight* eight = &octants_;
-  float off = 0;  // of the part around
-  for (int shift = SharePart::root_shift;; shift -= 3) {
-    SharePart& part = eight->parts[static_cast<std::size_t>(path >> shift & 7)];
-    std::uintptr_t address = address_of(part);
-    if (address == 0)
-      address =
-          shift > 0 && is_far_off(off) ? divide(0, part) : fit_or_divide(kernels, degree, strands(), path, shift, part);
-    if ((address & SharePart::divided) == 0) return part;
-    eight = parts_at(address);
-    off = part.bent;
-  }
-}
 
 }  // namespace marrow

@@ -28,7 +28,8 @@ RuleFinder::RuleFinder(const PieceCutter& cutter, const NearFar& precision, cons
 
 // Cut in halves until a rule is certified at the distance from which the field matters: nearer than
 // inside_distance the surface cannot be. The depth ends where a part is a thousandth of its piece.
-void RuleFinder::find(const Piece& whole, const std::function<void(const Piece& part, int nodes)>& found) {
+void RuleFinder::find(const Piece& whole, double share,
+                      const std::function<void(const Piece& part, int nodes)>& found) {
   struct Range {
     double begin, end;
   };
@@ -40,7 +41,7 @@ void RuleFinder::find(const Piece& whole, const std::function<void(const Piece& 
     const Piece part = r.end - r.begin == 1 ? whole : cutter_.part(whole, r.begin, r.end);
     const double ball = distance(part, center_) - half_ * std::sqrt(3.0);
     const double d = std::max({ball, separation(part.box(), box_), whole.inside_distance});
-    const auto rule = precision_.rule_for(part, d, 1);
+    const auto rule = precision_.rule_for(part, d, share);
     if (rule.within || r.end - r.begin < 1e-3) {
       found(part, rule.nodes);
       f_error += rule.error.field;
@@ -53,9 +54,10 @@ void RuleFinder::find(const Piece& whole, const std::function<void(const Piece& 
   }
 }
 
-void SourceEmitter::emit(const Piece& piece) {
+void SourceEmitter::emit(const Piece& piece, double share) {
   if (piece.is_point()) return add_nodes(piece, 1, center_, half_, degree_, points);
-  rules.find(piece, [&](const Piece& part, int nodes) { add_nodes(part, nodes, center_, half_, degree_, curves); });
+  rules.find(piece, share,
+             [&](const Piece& part, int nodes) { add_nodes(part, nodes, center_, half_, degree_, curves); });
 }
 
 CurvePiece curve_piece(const Piece& piece, int nodes, const Vec3d& center, double half, int degree) {

@@ -14,8 +14,9 @@ namespace marrow {
 class RuleFinder {
  public:
   RuleFinder(const PieceCutter&, const NearFar& precision, const Vec3d& center, double half);
-  /// Calls found(part, nodes) for the parts of a curve, first to last, and adds their errors.
-  void find(const Piece& whole, const std::function<void(const Piece& part, int nodes)>& found);
+  /// Calls found(part, nodes) for the parts of a curve, first to last, and adds their errors. `share`: of the budget of
+  /// a piece, what each part may cause.
+  void find(const Piece& whole, double share, const std::function<void(const Piece& part, int nodes)>& found);
 
   double f_error = 0, gradient_error = 0;
 
@@ -32,7 +33,7 @@ class SourceEmitter {
  public:
   SourceEmitter(const PieceCutter& cutter, const NearFar& precision, const Vec3d& center, double half)
       : rules(cutter, precision, center, half), degree_(precision.degree()), center_(center), half_(half) {}
-  void emit(const Piece&);
+  void emit(const Piece&, double share = 1);
 
   RuleFinder rules;  ///< with the errors
   SourceGroups curves, points;

@@ -46,12 +46,14 @@ inline IntOf<F> layer_of(F x) {
 // each.
 template <class Int>
 inline Int path_to(const Int (&layer)[3]) {
-  static_assert(SharePart::layers == 16);
-  static constexpr int spread[3][16] = {
-      {0, 1, 8, 9, 64, 65, 72, 73, 512, 513, 520, 521, 576, 577, 584, 585},
-      {0, 2, 16, 18, 128, 130, 144, 146, 1024, 1026, 1040, 1042, 1152, 1154, 1168, 1170},
-      {0, 4, 32, 36, 256, 260, 288, 292, 2048, 2052, 2080, 2084, 2304, 2308, 2336, 2340}};
-  return picked(spread[0], layer[0]) | picked(spread[1], layer[1]) | picked(spread[2], layer[2]);
+  static_assert(SharePart::halvings <= 8);
+  // Two bits come between those of a layer: halves of eight move apart, then halves of those.
+  const auto spread = [](Int bits) {
+    bits = (bits | bits << 8) & 0xf00f;
+    bits = (bits | bits << 4) & 0xc30c3;
+    return (bits | bits << 2) & 0x249249;
+  };
+  return spread(layer[0]) | spread(layer[1]) << 1 | spread(layer[2]) << 2;
 }
 
 // Asks memory for all eight parts: rays that come to one of them soon come to others.

@@ -112,13 +112,20 @@ inline void set_strand(const Slopes16 (&s)[4], Strand16& out) {
   out = {};
   out.f.value = select(counts, s[0].value, V16{});
   for (int e = 0; e < 3; ++e) out.f.slope[e] = select(counts, s[0].slope[e], V16{});
-  const V16 size2 = s[1].value * s[1].value + s[2].value * s[2].value + s[3].value * s[3].value;
+  // Over f, as squares of weak fields vanish in floats.
+  const V16 by_f = select(counts, 1.0F / s[0].value, V16{});
+  V16 v[3];
+  for (int k = 0; k < 3; ++k) v[k] = s[1 + k].value * by_f;
+  const V16 size2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
   const V16 inverse = select(counts & (size2 > 0.0F), 1.0F / root_of(size2), V16{});
-  for (int k = 0; k < 3; ++k) out.u[k].value = s[1 + k].value * inverse;
+  for (int k = 0; k < 3; ++k) out.u[k].value = v[k] * inverse;
   for (int e = 0; e < 3; ++e) {
-    V16 along{};
-    for (int k = 0; k < 3; ++k) along += out.u[k].value * s[1 + k].slope[e];
-    for (int k = 0; k < 3; ++k) out.u[k].slope[e] = (s[1 + k].slope[e] - out.u[k].value * along) * inverse;
+    V16 slope[3], along{};
+    for (int k = 0; k < 3; ++k) {
+      slope[k] = s[1 + k].slope[e] * by_f;
+      along += out.u[k].value * slope[k];
+    }
+    for (int k = 0; k < 3; ++k) out.u[k].slope[e] = (slope[k] - out.u[k].value * along) * inverse;
   }
 }
 
