@@ -29,8 +29,11 @@ StrandedLevel make_stranded_level(const Block::Context& context, const CellTree:
         out.directions[static_cast<std::size_t>(lanes_told / lanes * 3 * lanes + lanes_told % lanes) + k * lanes] =
             static_cast<float>(u[k]);
   };
-  // What the strongest is off turns it by as little as it is off over itself; all others count over each other.
-  const double of_others = std::min(1.0, Strands::budget_of(out.seen.view) / context.fine.budget().field);
+  // What the strongest is off turns it by as little as it is off over itself; all others count over each other, unless
+  // they are none, or so weak that the blend itself is asked.
+  const bool others_count = out.seen.view.others > 0 && !out.seen.is_weak;
+  const double of_others =
+      others_count ? std::min(1.0, Strands::budget_of(out.seen.view) / context.fine.budget().field) : 1;
   for (std::size_t i = 0; i < out.seen.near.size(); ++i) {
     const NearStrand& strand = out.seen.near[i];
     const bool is_strongest = out.seen.view.near[i] == out.seen.view.strongest;

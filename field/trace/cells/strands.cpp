@@ -27,7 +27,7 @@ constexpr double largest_ratio = 0.35;
 // 1e-38, and over a cell fields change by some powers of ten. At degree 20 that is 30 radii away.
 constexpr double weakest = 1e-30;
 // Of the share of angles: what all strands together may cause that the tiles around have folded, by an estimate that is
-// some 20 times what it is off. 1e-4 instead took a first picture of 10,000 hairs 1.18 times as long as no limit, 5e-4
+// some 20 times what it is off. 1e-4 instead took a first picture of 10,000 hairs 1.25 times as long as no limit, 5e-4
 // 1.1 times.
 constexpr double most_inherited = 1e-3;
 
