@@ -111,6 +111,7 @@ def complaints(root):
 def self_test():
     wrong = {
         "field/math/a.h": '#include "field/program/field_program.h"\n',
+        "field/trace/sources/a.h": '#include "field/trace/cells/tile.h"\n',
         "field/program/b.cpp": '#include "renderer/scene/scene_description.h"\n',
         "materials/c.h": '#include "field/blend/correction.h"\n',
         "renderer/output/d.h": "#include <OpenEXR/ImfHeader.h>\n",
@@ -118,6 +119,7 @@ def self_test():
         "field/unknown/f.h": "",
     }
     right = {
+        "field/trace/a.cpp": '#include "field/trace/cells/tile.h"\n',
         "field/program/g.cpp": '#include <vector>\n#include "field/math/vec3.h"\n',
         "renderer/geometry/h.cpp": '#include <embree3/rtcore.h>\n#include "renderer/scene/scene_description.h"\n',
         "tests/field/i.cpp": '#include <gtest/gtest.h>\n#include "renderer/app/options.h"\n',

@@ -69,15 +69,12 @@ BlockLevel write_stranded_level(const StrandedLevel& from, const Allocate& alloc
       for (std::size_t k = 0; k < 4; ++k) rest[m * row + k * stride + i] = seen.near[i].rest[4 * m + k];
   auto* const groups = reinterpret_cast<int*>(rest + quadratic_monomials * row);
   std::uninitialized_copy(from.groups.begin(), from.groups.end(), groups);
-  auto* const reference = new (rest + quadratic_monomials * row + stride) StrandLevel{.directions = directions,
-                                                                                      .groups = groups,
-                                                                                      .rest = rest,
-                                                                                      .count = static_cast<int>(count),
-                                                                                      .far = far,
-                                                                                      .is_weak = seen.is_weak};
+  auto* const reference = new (rest + quadratic_monomials * row + stride) StrandLevel{
+      .directions = directions, .groups = groups, .rest = rest, .count = static_cast<int>(count), .far = far};
   BlockLevel out;
   out.level = write_sources(from.curves, from.points, at);
   out.angle_error = seen.view.share_error();
+  out.is_weak = seen.is_weak;
   out.level.strands = reference;
   return out;
 }
@@ -94,9 +91,9 @@ float* memory_for(int strands) {
 
 double find_shares(const Block::Context& context, const CellTree::Cell& cell, const BlockLevel& from,
                    const float (&center)[3], float half, StrandShares& found) {
-  const StrandLevel& strands = *from.level.strands;
-  if (!strands.is_weak) {
-    context.kernels.strand_shares(from.level, context.degree, center, half, memory_for(strands.count), found);
+  if (!from.is_weak) {
+    float* const memory = memory_for(from.level.strands->count);
+    context.kernels.strand_shares(from.level, context.degree, center, half, memory, found);
     return from.angle_error;
   }
   found = {};

@@ -46,7 +46,7 @@ struct CellStrands {
   StrandView view;
   std::vector<NearStrand> near;  ///< view.near, in its order
   std::vector<float> far;        ///< StrandLevel::far
-  bool is_weak = false;          ///< StrandLevel::is_weak
+  bool is_weak = false;          ///< BlockLevel::is_weak
 };
 
 /// The share of the range of angles at a place, and its gradient.

@@ -36,7 +36,6 @@ struct StrandLevel {
   /// Strands that are not listed, for each monomial tensor_floats: sum f u^8; then far_sum, far_turned_pairs and
   /// far_pairs.
   const float* far = nullptr;
-  bool is_weak = false;  ///< floats do not tell the field of all strands but the strongest
 };
 
 /// One representation of the field in a block: f = sum w d^-m + polynomial, G = grad_S f likewise with w tau. Sources

@@ -11,6 +11,7 @@ struct alignas(64) BlockLevel : InHugePages {
   FieldLevel level;
   double f_error = 0, gradient_error = 0;
   double angle_error = 0;  ///< of level.angle; where there are strands, of the share of angles: an estimate
+  bool is_weak = false;    ///< floats do not tell the field of all strands but the strongest
 };
 
 }  // namespace marrow
