@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "field/trace/cells/stranded_level.h"
+#include "field/trace/cells/weak_strands.h"
 #include "field/trace/levels/level_buffer.h"
 #include "tests/trace/stage.h"
 
@@ -225,6 +226,45 @@ TEST(Strands, OfWeakOthersTellTheAngle) {
     std::cout << "  degree " << degree << ": " << places << " places, shares are off by " << largest << " at most\n";
     EXPECT_GT(places, 10);
     EXPECT_LT(largest, 3e-5) << "degree " << degree << " distance " << distance << " radius " << thin;
+  }
+}
+
+// In balls beside one strand and between several, of several segments each.
+TEST(Strands, FewOfThemCount) {
+  Random random(97);
+  for (const int degree : {4, 8, 20}) {
+    BlendField blend = random_scene(random, {degree, 1}, 0);
+    constexpr int count = 300;
+    for (int k = 0; k < count; ++k) {
+      const Vec3d middle = random.vector(1), half = random_direction(random) * 0.02, turn = random.vector(0.02);
+      blend.segments.add({middle - half, middle, 0.01, 0.01}, {});
+      blend.segments.add({middle, middle + half + turn, 0.01, 0.004}, {});
+      blend.segments.strands.insert(blend.segments.strands.end(), 2, static_cast<std::uint32_t>(k));
+      blend.direction_bounds.push_back(bounds);
+    }
+    double largest = 0, steepest = 0;
+    std::size_t kept = 0;
+    constexpr int balls = 40;
+    for (int i = 0; i < balls; ++i) {
+      const double reach = 0.01;
+      const Vec3d center = i % 2 == 0
+                               ? random.vector(1)
+                               : blend.segments.skeletons[static_cast<std::size_t>(2 * i)].from + random.vector(0.03);
+      const BlendField few = counting_strands(blend, center, reach);
+      kept += few.direction_bounds.size();
+      for (int k = 0; k < 5; ++k) {
+        const Vec3d p = center + random_direction(random) * reach;
+        const ShareSample by_all = exact_share(blend, p), by_few = exact_share(few, p);
+        largest = std::max(largest, std::fabs(by_all.value - by_few.value));
+        steepest = std::max(steepest, length(by_all.gradient - by_few.gradient) * reach);
+      }
+    }
+    const double mean = static_cast<double>(kept) / balls;
+    std::cout << "  degree " << degree << ": " << mean << " of " << count << " strands count, shares differ by "
+              << largest << ", over the ball by slopes by " << steepest << "\n";
+    EXPECT_LE(largest, 1e-6) << "degree " << degree;
+    EXPECT_LE(steepest, 1e-5) << "degree " << degree;
+    EXPECT_LT(mean, degree == 20 ? count / 3 : count + 1) << "degree " << degree;
   }
 }
 

@@ -1,10 +1,12 @@
 #include "field/trace/cells/stranded_level.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <new>
 #include <utility>
 
+#include "field/trace/cells/weak_strands.h"
 #include "field/trace/kernels/strand_places.h"
 #include "field/trace/levels/level_buffer.h"
 #include "field/trace/sources/source_emitter.h"
@@ -97,10 +99,12 @@ double find_shares(const Block::Context& context, const CellTree::Cell& cell, co
     return from.angle_error;
   }
   found = {};
+  const Vec3d in_block{static_cast<double>(center[0]), static_cast<double>(center[1]), static_cast<double>(center[2])};
+  const Vec3d middle = cell.center + in_block * cell.half;
+  const double side = static_cast<double>(half) * cell.half;
+  const BlendField blend = counting_strands(context.strands->blend(), middle, std::sqrt(3.0) * side);
   for (std::size_t k = 0; k < strand_places; ++k) {
-    const Vec3d at{static_cast<double>(center[0]), static_cast<double>(center[1]), static_cast<double>(center[2])};
-    const Vec3d place = at + place_in_cube(k) * static_cast<double>(half);
-    const ShareSample share = context.strands->exact_share(cell.center + place * cell.half);
+    const ShareSample share = exact_share(blend, middle + place_in_cube(k) * side);
     found.share[k] = static_cast<float>(share.value);
     for (std::size_t e = 0; e < 3; ++e) found.slope[e][k] = static_cast<float>(share.gradient[e] * cell.half);
   }

@@ -153,9 +153,14 @@ void find_others(const std::vector<Seen>& seen, double folded, StrandView& view)
 
 }  // namespace
 
-// The strands of least error that must be folded so that no more than `most` are left: of equal ones the first.
-std::vector<bool> Strands::forced(const std::vector<Seen>& seen, std::size_t most) {
+// Those that a quadratic tells well enough, and so many of the others, of least error, that no more than `most` are
+// left: of equal ones the first. None where they are weak.
+std::vector<bool> Strands::to_fold(const std::vector<Seen>& seen, double others, std::size_t most) const {
   std::vector<bool> chosen(seen.size(), false);
+  if (is_weak(others)) return chosen;
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    chosen[i] =
+        static_cast<double>(seen[i].middle.ratio) <= largest_ratio && error_of(seen[i].middle) <= budget * others;
   if (seen.size() <= most) return chosen;
   std::vector<std::pair<double, std::size_t>> errors;
   for (std::size_t i = 0; i < seen.size(); ++i) errors.emplace_back(error_of(seen[i].middle), i);
@@ -179,10 +184,10 @@ StrandView Strands::fold(const std::vector<Seen>& seen, const Cube& cube, const 
     view.error = outer.error;
   }
   find_others(seen, std::max(0.0, static_cast<double>(values[sum_of_f])), view);
-  const std::vector<bool> must = forced(seen, most);
+  const std::vector<bool> is_folded = to_fold(seen, view.others, most);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const auto& [strand, middle] = seen[i];
-    if (!must[i] && (static_cast<double>(middle.ratio) > largest_ratio || error_of(middle) > budget * view.others)) {
+    if (!is_folded[i]) {
       view.near.push_back(strand);
       continue;
     }
@@ -196,6 +201,8 @@ StrandView Strands::fold(const std::vector<Seen>& seen, const Cube& cube, const 
   return view;
 }
 
+bool Strands::is_weak(double others) const { return others < weakest && !is_alone_; }
+
 std::vector<Strands::Seen> Strands::seen_from(const Cube& cube, const StrandView* parent) const {
   std::vector<Seen> seen;
   if (parent != nullptr) {
@@ -208,13 +215,13 @@ std::vector<Strands::Seen> Strands::seen_from(const Cube& cube, const StrandView
 }
 
 // From the smallest tile that has folded nothing that counts here: a tile judges by its middle, where other strands may
-// be much stronger.
+// be much stronger. Where all others are weak the blend itself tells the shares.
 StrandView Strands::view_of(const Cube& cube, const Tile* around_it, std::size_t most,
                             std::vector<float>& values) const {
   for (const Tile* from = around_it;; from = from->place().parent) {
     const StrandView* outer = from != nullptr ? &around(*from) : nullptr;
     StrandView view = fold(seen_from(cube, outer), cube, from, most, values);
-    if (outer == nullptr || outer->error <= most_inherited * view.others) return view;
+    if (outer == nullptr || is_weak(view.others) || outer->error <= most_inherited * view.others) return view;
   }
 }
 
@@ -271,19 +278,13 @@ CellStrands Strands::around(const Tile& tile, const Vec3d& center, double half) 
   const Cube cube{center, half};
   std::vector<float> values;
   CellStrands cell{.view = view_of(cube, &tile, most_strands, values), .near = {}, .far = {}};
-  cell.is_weak = cell.view.others < weakest && !is_alone_;
+  cell.is_weak = is_weak(cell.view.others);
+  if (cell.is_weak) cell.view.near.clear();
   for (const std::uint32_t strand : cell.view.near) cell.near.push_back(divided(strand, cube, cell.view));
   cell.far = far_rows(cell.view.far, values);
   return cell;
 }
 
 double Strands::budget_of(const StrandView& view) { return budget * view.others; }
-
-ShareSample Strands::exact_share(const Vec3d& p) const {
-  const DirectionBounds range = blend_.direction_bounds.front();
-  const double width = range.most - range.least;
-  const AlphaSample alpha = alpha_at(blend_, p);
-  return {std::clamp((alpha.value - range.least) / width, 0.0, 1.0), alpha.gradient / width};
-}
 
 }  // namespace marrow

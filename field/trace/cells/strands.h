@@ -25,7 +25,7 @@ struct BlendField;
 
 /// What a cube sees of the strands.
 struct StrandView {
-  std::vector<std::uint32_t> near;  ///< those that count one by one
+  std::vector<std::uint32_t> near;  ///< those that count one by one; of a cell whose others are weak none
   std::vector<float> far;           ///< all others: tensor_floats for each monomial, in the coordinates of the cube
   double others = 0;                ///< the field of all strands but the strongest in its middle
   std::size_t strongest = std::numeric_limits<std::size_t>::max();  ///< that one, if it counts one by one
@@ -49,12 +49,6 @@ struct CellStrands {
   bool is_weak = false;          ///< BlockLevel::is_weak
 };
 
-/// The share of the range of angles at a place, and its gradient.
-struct ShareSample {
-  double value = 0;
-  Vec3d gradient;
-};
-
 /// Immutable; safe to use from many threads.
 class Strands {
  public:
@@ -69,8 +63,7 @@ class Strands {
 
   /// Of the field of each other strand what one piece may be off.
   static double budget_of(const StrandView&);
-  /// By all primitives, in double.
-  ShareSample exact_share(const Vec3d& p) const;
+  const BlendField& blend() const { return blend_; }
 
  private:
   struct Strand {
@@ -91,10 +84,11 @@ class Strands {
   void add_nodes(const Piece&, std::uint32_t index, int& lane);
   const StrandView& around(const Tile&) const;
   StrandView view_of(const Cube&, const Tile* around, std::size_t most, std::vector<float>& values) const;
+  bool is_weak(double others) const;
   std::vector<Seen> seen_from(const Cube&, const StrandView* parent) const;
   StrandQuery query(std::uint32_t strand, const Cube&) const;
   Seen see(std::uint32_t strand, const Cube&) const;
-  static std::vector<bool> forced(const std::vector<Seen>&, std::size_t most);
+  std::vector<bool> to_fold(const std::vector<Seen>&, double others, std::size_t most) const;
   // Leaves at most `most` to count one by one. `values`: of the tensor, at the places of the cube.
   StrandView fold(const std::vector<Seen>&, const Cube&, const Tile* from, std::size_t most,
                   std::vector<float>& values) const;
