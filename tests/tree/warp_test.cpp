@@ -102,6 +102,26 @@ TEST(Warps, BendMakesAnArc) {
   expect_near(half.child_point(Vec3d{radius + 0.5, -radius, 0}), {0, -1.5, 0});
 }
 
+// Where the ends of a ring meet, slopes are those nearby, however near its cut.
+TEST(Warps, BendHasSlopesBesideItsCut) {
+  const Bend ring{.axis = UnitVec3::unchecked({0, 1, 0}), .length = 3, .angle = 360 * deg};
+  const double behind = 2 * 3 / (2 * std::numbers::pi) + 0.1;
+  const auto child_at = [&](double y) {
+    return ring.child_point(Vec3<test::Slope>{test::Slope::variable(behind, 0), test::Slope::variable(y, 1),
+                                              test::Slope::variable(0.2, 2)});
+  };
+  for (const double side : {-1.0, 1.0}) {
+    const auto nearby = child_at(side * 1e-9);
+    for (const double y : {side * 1e-160, side * 1e-300, side * 5e-324}) {
+      const auto beside = child_at(y);
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(beside[k].value, nearby[k].value, 1e-8) << y;
+        for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(beside[k].slope[i], nearby[k].slope[i], 1e-8) << y;
+      }
+    }
+  }
+}
+
 // Behind the centre of the circle a box holds what belongs to both ends: small places each, not all that lies between.
 TEST(Warps, BendTakesABoxOnItsCutToBothSides) {
   test::Random random(77);

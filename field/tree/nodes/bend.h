@@ -106,6 +106,7 @@ struct Bend {
   double radius() const { return angle > 0 ? length / angle : Box3::inf; }
   template <Number X, class AtEnd, class Between>
   X in_three(const X& at, AtEnd at_end, Between between) const {
+    if (angle >= 2 * std::numbers::pi) return between(at);  // behind an end there is nothing
     const double half = angle / 2;
     return piecewise(
         at, -half, [&](const X&) { return at_end(-half); },
@@ -117,9 +118,11 @@ struct Bend {
     if constexpr (is_enclosure<X>) {
       return angle_over(y, x);
     } else {
-      if (value_of(y) == 0 && !(value_of(x) > 0)) return X(std::numbers::pi);
+      if (value_of(y) == 0 && value_of(x) == 0) return X(std::numbers::pi);
       const X r = sqrt(square(x) + square(y));
-      return value_of(x) < 0 ? X(2.0) * atan((r - x) / y) : X(2.0) * atan(y / (r + x));
+      if (!(value_of(x) < 0)) return X(2.0) * atan(y / (r + x));
+      const double far_side = value_of(y) < 0 ? -std::numbers::pi : std::numbers::pi;
+      return far_side - 2.0 * atan(y / (r - x));
     }
   }
   static Interval angle_over(const Interval& y, const Interval& x);
