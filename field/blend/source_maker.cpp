@@ -27,8 +27,10 @@ constexpr double largest = 1;
 // A triangle that is longer than so many of its distances stays a closed form: beside it points would be 10^4 and more,
 // in every box anew.
 constexpr double most_over_distance = 4;
-// Parts of a primitive are halves of halves down to this.
+// Parts of a primitive are halves of halves down to this; and where one is so short over its distance that rules for it
+// take few nodes, if there are any, there are none for its halves either.
 constexpr int deepest = 12;
+constexpr double shortest = 0.01;
 
 struct Nodes {
   std::span<const double> positions, weights;
@@ -186,7 +188,8 @@ void SourceMaker::divide(const Skeleton& whole, PrimitiveList<Skeleton>& rest) {
     open.pop_back();
     const View view = seen(least_distance(s, center_), least_radius(s));
     if (!view.too_near && add_part(s, view.lifted)) continue;
-    if (depth == deepest || (view.too_near && size(s) < largest * rho_)) {
+    const bool is_short = size(s) < (view.too_near ? largest * rho_ : shortest * view.lifted);
+    if (depth == deepest || is_short) {
       rest.skeletons.push_back(s);
       continue;
     }

@@ -9,8 +9,11 @@ namespace marrow {
 namespace {
 
 // Ellipses reach to this share of the distance; of an arc, whose real shift takes its share too, to less. Larger ones
-// converge faster from larger bounds: 0.6 and 0.8 take about as many nodes.
-constexpr double reach_of_line = 0.7, reach_of_arc = 0.45;
+// converge faster from larger bounds: 0.6 and 0.8 take about as many nodes. An ellipse of the reach x holds no place
+// without distance where x < (1 - shift) / sqrt(2); of an arc with a radius R the shift is sqrt(R^2 + x^2) - R, which
+// is nearly x where R is small: x < 0.41.
+constexpr double reach_of_line = 0.7;
+double reach_of_arc(double radius) { return radius < 0.3 ? 0.35 : 0.45; }
 // Longer pieces are cut at once.
 constexpr double longest = 1.3;
 
@@ -28,8 +31,8 @@ std::optional<Ellipse> ellipse_for(const RulePiece& piece, double distance) {
     const double along = std::max(std::sqrt(h * h + lift * lift), 1e-6), b = reach_of_line / along;
     return Ellipse{std::sqrt(1 + b * b), b, along};
   }
-  const double R = h / piece.half_angle, turn = asinh(reach_of_arc / R), b = turn / piece.half_angle;
-  const double along = reach_of_arc / b;
+  const double R = h / piece.half_angle, reach = reach_of_arc(R);
+  const double turn = asinh(reach / R), b = turn / piece.half_angle, along = reach / b;
   return Ellipse{std::sqrt(1 + b * b), b, std::sqrt(along * along + lift * lift), R * (cosh(turn) - 1)};
 }
 

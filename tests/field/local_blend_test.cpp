@@ -1,6 +1,7 @@
 // A blend in a part of space is the blend, to within what is certified, and its bounds hold its values and slopes.
 #include "field/blend/local_blend.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
@@ -76,6 +77,36 @@ TEST(LocalBlend, IsTheBlendToWithinItsCertifiedError) {
   std::cout << "  " << checked << " points, largest difference " << worst << '\n';
   EXPECT_GT(checked, 500);
   EXPECT_LT(worst, 1e-10);
+}
+
+// The elbows of pipes: rules hold however small the circle and short the arc.
+TEST(LocalBlend, ArcsOfSmallCirclesBecomeFewSources) {
+  Random random(20260305);
+  double worst = 0;
+  std::size_t most = 0;
+  for (int round = 0; round < 600; ++round) {
+    BlendField blend;
+    blend.degree = random.whole(3, 8);
+    if (round % 3 == 0) blend.kernel = KernelFamily::Cauchy;
+    ArcSkeleton arc = random.arc();
+    arc.major = pow(10.0, random.between(-4, 0.3));
+    arc.radius_from = arc.radius_to = 0.05;
+    arc.end = arc.begin + pow(10.0, random.between(-3, 0.7));
+    blend.arcs.add(arc, {});
+    const Vec3d center = arc.center + random.vector(2 + arc.major);
+    const double away = distance_to(arc, center);
+    const Box3 box = Box3{center, center}.padded(random.between(0.1, 0.3) * away);
+    const auto local = LocalBlend::make(blend, nullptr, box);
+    ASSERT_TRUE(local) << "round " << round;
+    const double field = evaluate(blend, center).sum;
+    most = std::max(most, local->near_count() + local->source_count());
+    if (!(field < 1)) continue;
+    const Vec3d p = point_in(box, random);
+    worst = std::max(worst, std::fabs(local->value(p) - corrected_value(blend, p)));
+  }
+  std::cout << "  at most " << most << " sources and parts, off by " << worst << '\n';
+  EXPECT_LE(most, 200U);
+  EXPECT_LE(worst, 1e-9);
 }
 
 TEST(LocalBlend, BoundsHoldValuesAndSlopes) {
