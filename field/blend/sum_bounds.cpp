@@ -166,15 +166,27 @@ double farthest(const TriangleSkeleton& s, const Vec3d& p) {
   return std::max({length(p - s.vertices[0]), length(p - s.vertices[1]), length(p - s.vertices[2])});
 }
 
-// Of each part the kernel of the largest distance over the least radius, over the largest radius.
+double extent(const TriangleSkeleton& s) {
+  const auto& v = s.vertices;
+  return std::max({length(v[1] - v[0]), length(v[2] - v[1]), length(v[0] - v[2])});
+}
+double extent(const auto& s) { return measure(s); }
+
+// Of each part the kernel of the largest distance over the least radius, over the largest radius. After so many cuts
+// parts are cut where they are longer than the box is away from them: there a small part tells what is inside of all
+// that lies around a large skeleton. Parts of `finest` radii do for that.
 template <class Skeleton>
 double least_field(const Skeleton& s, const Profile& profile, const Vec3d& center, double rho, int cuts) {
-  if (cuts > 0) {
+  constexpr int most_cuts = 12;
+  constexpr double finest = 0.3;
+  const double far = farthest(s, center) + rho, size = extent(s), least = least_radius(s);
+  const bool is_long = 2 * size > far && size > finest * least;
+  if (cuts > 0 || (is_long && cuts > -most_cuts)) {
     double sum = 0;
     for (const Skeleton& part : parts(s)) sum += least_field(part, profile, center, rho, cuts - 1);
     return sum;
   }
-  const double radius = largest_radius(s), x = (farthest(s, center) + rho) / least_radius(s);
+  const double radius = largest_radius(s), x = far / least;
   const double over_radius = measure(s) / (dimension(s) == 2 ? radius * radius : radius);
   return over_radius * profile.at(x * x).value / profile.normalisation() * (1 - 1e-9);
 }

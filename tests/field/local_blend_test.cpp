@@ -161,6 +161,36 @@ TEST(LocalBlend, BoundsOfTheBlendHoldBesideAndOnSkeletons) {
   EXPECT_GT(above_one, 50);  // the inside of a tube can be told around its axis
 }
 
+// However much larger than its radius the skeleton is.
+TEST(LocalBlend, BoundsTellTheInsideOfThinPlatesAndTubes) {
+  Random random(20260306);
+  constexpr int rounds = 300;
+  int above_one = 0;
+  for (int round = 0; round < rounds; ++round) {
+    BlendField blend;
+    blend.degree = random.whole(4, 9);
+    const double radius = pow(10.0, random.between(-3, -1));
+    const Vec3d a = random.vector(1), b = random.vector(1), c = random.vector(1);
+    const double u = random.between(0.2, 0.4), v = random.between(0.2, 0.4);
+    Vec3d on = lerp(a, b, u);
+    if (round % 2 == 0) {
+      blend.triangles.add({{a, b, c}, {radius, radius, radius}}, {});
+      on = on + (c - a) * v;
+    } else {
+      blend.segments.add({a, b, radius, radius}, {});
+    }
+    const Box3 box = Box3{on, on}.padded(radius * pow(10.0, random.between(-4, -0.8)));
+    const Interval bounds = blend_bounds(blend, box).value;
+    above_one += bounds.lo > 1;
+    for (int i = 0; i < 10; ++i) {
+      const double value = corrected_value(blend, point_in(box, random));
+      EXPECT_TRUE(bounds.contains(value)) << value << ' ' << bounds.lo << ' ' << bounds.hi;
+    }
+  }
+  std::cout << "  " << above_one << " of " << rounds << " boxes are inside\n";
+  EXPECT_GT(above_one, rounds * 9 / 10);
+}
+
 // The same lanes in plain doubles, in their order: no instruction set may give other bits.
 TEST(SourceSums, AreTheSumsOfTheirLanesBitForBit) {
   Random random(20260304);
