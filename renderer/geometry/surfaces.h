@@ -51,7 +51,8 @@ class Surfaces {
   /// The same hit, to the same bits, and what it took.
   virtual std::optional<SurfaceHit> first_hit(const Ray&, RayRecord&) const = 0;
   /// Whether any surface lies on the ray within its interval: where it has a first hit, but for a touch of the surface
-  /// that first_hit() could not decide (RayRecord::certified).
+  /// that first_hit() could not decide (RayRecord::certified), or that is no deeper than sums of fields are exact
+  /// (1e-10 in general trees).
   virtual bool occluded(const Ray&) const = 0;
   /// What first_hit() finds for each of the rays, to the same bits. Sooner for many rays through the same region, those
   /// of neighbouring pixels next to each other.

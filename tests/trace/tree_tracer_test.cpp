@@ -2,10 +2,12 @@
 #include "field/trace/general/tree_tracer.h"
 
 #include <algorithm>
+#include <iostream>
 #include <utility>
 
 #include <gtest/gtest.h>
 
+#include "field/math/elementary.h"
 #include "field/program/field_program.h"
 #include "field/trace/general/crossing.h"
 #include "field/tree/any_node.h"
@@ -99,6 +101,14 @@ CrossingSearch traced(const TreeTracer& tracer, const Ray& ray) {
   return first;
 }
 
+bool is_any(const TreeTracer& tracer, const Ray& ray) {
+  for (std::size_t cell = 0; cell < tracer.cell_count(); ++cell) {
+    CellLog log;
+    if (tracer.first_hit(cell, ray, true, log)) return true;
+  }
+  return false;
+}
+
 // The first change of side among samples, as an interval.
 std::optional<Interval> sampled(const FieldTree& tree, const Ray& ray, double end) {
   constexpr int samples = 3000;
@@ -135,6 +145,41 @@ TEST(TreeTracer, NeverComesAfterWhatSamplingFindsAndAlwaysLiesOnTheSurface) {
   }
   EXPECT_GT(hits, 100);
   EXPECT_LE(undecided, 5);
+}
+
+// Silhouettes, between a ray that hits and one that does not, with ends at any distance behind the touch.
+TEST(TreeTracer, TellsATouchBeforeAnyEndOfTheRay) {
+  Random random(78);
+  int touches = 0, missed = 0;
+  for (int scene = 0; scene < 20; ++scene) {
+    const auto tracer = TreeTracer::make(random_tree(random));
+    ASSERT_TRUE(tracer) << tracer.why()[0].message;
+    for (int i = 0; i < 20; ++i) {
+      const Vec3d eye = normalize(random.vector(1)) * 6;
+      const auto ray_to = [&](const Vec3d& aim) {
+        return Ray{.origin = eye, .direction = normalize(aim - eye), .t_min = 0, .t_max = 20};
+      };
+      Vec3d hits = random.vector(1.2), misses = random.vector(3);
+      if (!traced(*tracer, ray_to(hits)).t || traced(*tracer, ray_to(misses)).t) continue;
+      for (int step = 0; step < 40; ++step) {
+        const Vec3d aim = (hits + misses) * 0.5;
+        (traced(*tracer, ray_to(aim)).t ? hits : misses) = aim;
+      }
+      Ray ray = ray_to(hits);
+      const CrossingSearch touch = traced(*tracer, ray);
+      if (touch.undecided < *touch.t) continue;
+      ++touches;
+      bool is_told = true;
+      for (int k = 0; k < 10; ++k) {
+        ray.t_max = *touch.t + pow(10.0, random.between(-5, 0.5));
+        is_told = is_told && is_any(*tracer, ray);
+      }
+      missed += !is_told;
+    }
+  }
+  std::cout << "  " << touches << " touches, " << missed << " of them missed\n";
+  EXPECT_GT(touches, 40);
+  EXPECT_EQ(missed, 0);
 }
 
 // A bend cuts space behind the centre of its circle: rays across the cut are decided all the same.

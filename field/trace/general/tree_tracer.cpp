@@ -136,6 +136,8 @@ std::optional<TreeHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, b
     const auto hit = c.part != nullptr ? search.in(*c.part, t) : search.in(tree_, c.member, t, nullptr);
     // Where any crossing may lie behind the end of the ray, the first one tells.
     if (any && hit && hit->t > ray.t_max - nearly_ended) return first_hit(cell, ray, false, log);
+    // A touch that may be there is one if the first hit is: that search may have looked at other places.
+    if (any && !hit && log.undecided < Box3::inf) return first_hit(cell, ray, false, log);
     if (!hit || hit->t > ray.t_max) return {};
     if (members_.empty() || !(is_covered(c.member, ray, hit->t) || is_joint(c.member, ray, hit->t))) return hit;
     onward.t_min = t.lo = std::max(hit->t, std::nextafter(t.lo, Box3::inf));
