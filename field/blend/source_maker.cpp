@@ -51,12 +51,6 @@ double least_distance(const ArcSkeleton& s, const Vec3d& p) {
 }
 double least_distance(const auto& s, const Vec3d& p) { return distance_to(s, p); }
 
-double size(const TriangleSkeleton& s) {
-  const auto& v = s.vertices;
-  return std::max({length(v[1] - v[0]), length(v[2] - v[1]), length(v[0] - v[2])});
-}
-double size(const auto& s) { return measure(s); }
-
 }  // namespace
 
 SourceMaker::SourceMaker(const BlendField& blend, const Box3& box, double error, double share)
@@ -178,7 +172,7 @@ template <class Skeleton>
 void SourceMaker::divide(const Skeleton& whole, PrimitiveList<Skeleton>& rest) {
   if (!(measure(whole) > 0)) return;
   if constexpr (std::same_as<Skeleton, TriangleSkeleton>)
-    if (most_over_distance * seen(least_distance(whole, center_), least_radius(whole)).lifted < size(whole)) {
+    if (most_over_distance * seen(least_distance(whole, center_), least_radius(whole)).lifted < extent(whole)) {
       rest.skeletons.push_back(whole);
       return;
     }
@@ -188,7 +182,7 @@ void SourceMaker::divide(const Skeleton& whole, PrimitiveList<Skeleton>& rest) {
     open.pop_back();
     const View view = seen(least_distance(s, center_), least_radius(s));
     if (!view.too_near && add_part(s, view.lifted)) continue;
-    const bool is_short = size(s) < (view.too_near ? largest * rho_ : shortest * view.lifted);
+    const bool is_short = extent(s) < (view.too_near ? largest * rho_ : shortest * view.lifted);
     if (depth == deepest || is_short) {
       rest.skeletons.push_back(s);
       continue;

@@ -166,12 +166,6 @@ double farthest(const TriangleSkeleton& s, const Vec3d& p) {
   return std::max({length(p - s.vertices[0]), length(p - s.vertices[1]), length(p - s.vertices[2])});
 }
 
-double extent(const TriangleSkeleton& s) {
-  const auto& v = s.vertices;
-  return std::max({length(v[1] - v[0]), length(v[2] - v[1]), length(v[0] - v[2])});
-}
-double extent(const auto& s) { return measure(s); }
-
 // Of each part the kernel of the largest distance over the least radius, over the largest radius. After so many cuts
 // parts are cut where they are longer than the box is away from them: there a small part tells what is inside of all
 // that lies around a large skeleton. Parts of `finest` radii do for that.

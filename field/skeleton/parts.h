@@ -1,6 +1,7 @@
 // Skeletons cut into equal parts of the same kind.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "field/description/field_node.h"
@@ -36,6 +37,13 @@ inline double measure(const ArcSkeleton& s) { return s.major * (s.end - s.begin)
 inline double measure(const TriangleSkeleton& s) {
   return 0.5 * length(cross(s.vertices[1] - s.vertices[0], s.vertices[2] - s.vertices[0]));
 }
+
+/// The longest way along it, or the longest side.
+inline double extent(const TriangleSkeleton& s) {
+  const auto& v = s.vertices;
+  return std::max({length(v[1] - v[0]), length(v[2] - v[1]), length(v[0] - v[2])});
+}
+inline double extent(const auto& s) { return measure(s); }
 
 inline Vec3d place_at(const ArcSkeleton& s, double angle) {
   const auto [sine, cosine] = sincos(angle);

@@ -65,7 +65,7 @@ std::vector<std::uint32_t> numbers_of_counting(const std::vector<FieldRange>& fi
   double left_out = 0;
   for (const auto& [most, strand] : by_strength) {
     left_out += most;
-    if (!(left_out <= allowed)) break;
+    if (!(left_out < allowed)) break;  // where the second is 0 in double, too, all are kept
     numbers[strand] = none;
   }
   std::uint32_t count = 0;
