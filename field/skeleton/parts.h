@@ -38,7 +38,7 @@ inline double measure(const TriangleSkeleton& s) {
   return 0.5 * length(cross(s.vertices[1] - s.vertices[0], s.vertices[2] - s.vertices[0]));
 }
 
-/// The longest way along it, or the longest side.
+/// The length, or the longest side.
 inline double extent(const TriangleSkeleton& s) {
   const auto& v = s.vertices;
   return std::max({length(v[1] - v[0]), length(v[2] - v[1]), length(v[0] - v[2])});

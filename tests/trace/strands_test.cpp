@@ -254,7 +254,7 @@ TEST(Strands, FewOfThemCount) {
       kept += few.direction_bounds.size();
       for (int k = 0; k < 5; ++k) {
         const Vec3d p = center + random_direction(random) * reach;
-        const ShareSample by_all = exact_share(blend, p), by_few = exact_share(few, p);
+        const AngleShare by_all = exact_share(blend, p), by_few = exact_share(few, p);
         largest = std::max(largest, std::fabs(by_all.value - by_few.value));
         steepest = std::max(steepest, length(by_all.gradient - by_few.gradient) * reach);
       }

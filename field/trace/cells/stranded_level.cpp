@@ -104,7 +104,7 @@ double find_shares(const Block::Context& context, const CellTree::Cell& cell, co
   const double side = static_cast<double>(half) * cell.half;
   const BlendField blend = counting_strands(context.strands->blend(), middle, std::sqrt(3.0) * side);
   for (std::size_t k = 0; k < strand_places; ++k) {
-    const ShareSample share = exact_share(blend, middle + place_in_cube(k) * side);
+    const AngleShare share = exact_share(blend, middle + place_in_cube(k) * side);
     found.share[k] = static_cast<float>(share.value);
     for (std::size_t e = 0; e < 3; ++e) found.slope[e][k] = static_cast<float>(share.gradient[e] * cell.half);
   }

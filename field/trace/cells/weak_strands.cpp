@@ -87,7 +87,7 @@ void add_numbered(const PrimitiveList<Skeleton>& from, const std::vector<std::ui
 
 }  // namespace
 
-ShareSample exact_share(const BlendField& blend, const Vec3d& p) {
+AngleShare exact_share(const BlendField& blend, const Vec3d& p) {
   const DirectionBounds range = blend.direction_bounds.front();
   const double width = range.most - range.least;
   const AlphaSample alpha = alpha_at(blend, p);

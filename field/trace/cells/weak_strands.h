@@ -7,13 +7,13 @@
 namespace marrow {
 
 /// The share of the range of angles at a place, and its gradient.
-struct ShareSample {
+struct AngleShare {
   double value = 0;
   Vec3d gradient;
 };
 
 /// The share by all primitives of a blend of points and segments whose strands have the same bounds; in double.
-ShareSample exact_share(const BlendField&, const Vec3d& p);
+AngleShare exact_share(const BlendField&, const Vec3d& p);
 
 /// Such a blend of those strands alone that shares within the ball may depend on: all that is left out together is
 /// below 1e-6 of the second strongest strand, over whose field a share is a mean.
