@@ -1,4 +1,4 @@
-// Field of a triangle of linear radius: Gauss-Legendre over lines parallel to an edge, each line in closed form.
+// Field of a triangle of linear radius: Gauss-Legendre over lines parallel to a side, each line in closed form.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -7,12 +7,13 @@
 #include "field/kernel/panels.h"
 #include "field/skeleton/moment_sample.h"
 #include "field/skeleton/skeletons.h"
+#include "field/skeleton/triangle_methods.h"
 #include "field/skeleton/triangle_view.h"
 
 namespace marrow {
 
 template <Derivatives Order>
-SkeletonSample triangle_field(const TriangleSkeleton& triangle, const Vec3d& p, int n) {
+SkeletonSample triangle_by_lines(const TriangleSkeleton& triangle, const Vec3d& p, int n) {
   bool foot_is_inside = false;
   const TriangleView v = best_view(triangle, p, foot_is_inside);
   if (!(v.apex_w > 0)) return {};
@@ -33,6 +34,13 @@ SkeletonSample triangle_field(const TriangleSkeleton& triangle, const Vec3d& p, 
   return sum.value <= field_ceiling ? sum : SkeletonSample::on_skeleton();
 }
 
+template <Derivatives Order>
+SkeletonSample triangle_field(const TriangleSkeleton& triangle, const Vec3d& p, int n) {
+  const auto by_sides = triangle_by_sides<Order>(triangle, p, n);
+  return by_sides ? *by_sides : triangle_by_lines<Order>(triangle, p, n);
+}
+
+template SkeletonSample triangle_by_lines<Derivatives::Second>(const TriangleSkeleton&, const Vec3d&, int);
 template SkeletonSample triangle_field<Derivatives::ScaleInvariant>(const TriangleSkeleton&, const Vec3d&, int);
 template SkeletonSample triangle_field<Derivatives::First>(const TriangleSkeleton&, const Vec3d&, int);
 template SkeletonSample triangle_field<Derivatives::Second>(const TriangleSkeleton&, const Vec3d&, int);

@@ -8,6 +8,7 @@
 #include "field/kernel/inverse_family.h"
 #include "field/math/box3.h"
 #include "field/skeleton/skeletons.h"
+#include "field/skeleton/triangle_methods.h"
 #include "tests/field/random.h"
 
 namespace marrow {
@@ -82,6 +83,77 @@ TEST(Triangle, IsInfiniteOnItselfAndFiniteInItsPlaneBeside) {
       EXPECT_TRUE(is_finite(s.gradient) && is_finite(s.si_gradient)) << "n " << n << " 1e" << e;
     }
   }
+}
+
+double jacobian_difference(const SkeletonSample& a, const SkeletonSample& b) {
+  double off = 0, size = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    off += length(a.si_jacobian.rows[i] - b.si_jacobian.rows[i]);
+    size += length(b.si_jacobian.rows[i]);
+  }
+  return off / size;
+}
+
+// Above a triangle of one radius, and beside it in and near its plane, from a thousandth of its size away.
+struct NearPlace {
+  TriangleSkeleton triangle;
+  Vec3d p;
+};
+NearPlace place_near_triangle(Random& random, int i) {
+  TriangleSkeleton t = random.triangle();
+  const double radius = exp(random.between(-7, 0)), u = random.between(0, 1), v = random.between(0, 1 - u);
+  t.radii = {radius, radius, radius};
+  const auto& [a, b, c] = t.vertices;
+  const Vec3d across = cross(b - a, c - a), normal = across / length(across);
+  const Vec3d up = normal * (radius * exp(random.between(-1, 2)));
+  if (i % 3 == 0) return {t, a + (b - a) * u + (c - a) * v + up};
+  const Vec3d on_side = a + (b - a) * u, out = cross(b - a, normal) / length(b - a);
+  return {t, on_side + out * (radius * exp(random.between(-2, 2))) + (i % 3 == 1 ? up : Vec3d{})};
+}
+
+// Lines lose more digits than sides where a triangle is many radii wide.
+TEST(Triangle, OfOneRadiusIsTheSameBySidesAndByLines) {
+  Random random(83);
+  double worst = 0, worst_jacobian = 0;
+  int compared = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const auto [t, p] = place_near_triangle(random, i);
+    const int n = random.whole(min_kernel_degree, max_kernel_degree);
+    const auto sides = triangle_by_sides<second>(t, p, n);
+    if (!sides || sides->value > 1e4) continue;
+    const SkeletonSample lines = triangle_by_lines<second>(t, p, n);
+    worst = std::max(worst, difference(*sides, lines));
+    worst_jacobian = std::max(worst_jacobian, jacobian_difference(*sides, lines));
+    ++compared;
+  }
+  std::cout << "  worst relative difference of " << compared << ": " << worst << ", of Jacobians " << worst_jacobian
+            << '\n';
+  EXPECT_GT(compared, 2000);
+  EXPECT_LE(worst, 1e-9);
+  EXPECT_LE(worst_jacobian, 1e-9);
+}
+
+TEST(Triangle, SidesKeepTheirDigitsWhereTheTriangleIsCut) {
+  Random random(84);
+  double worst = 0;
+  int cut = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const auto [t, p] = place_near_triangle(random, i);
+    const auto& [a, b, c] = t.vertices;
+    const int n = random.whole(min_kernel_degree, max_kernel_degree);
+    const Vec3d middle = lerp(b, c, random.between(0.3, 0.7));
+    const auto whole = triangle_by_sides<second>(t, p, n);
+    const auto left = triangle_by_sides<second>({{a, b, middle}, t.radii}, p, n),
+               right = triangle_by_sides<second>({{a, middle, c}, t.radii}, p, n);
+    if (!whole || !left || !right || whole->value > 1e4) continue;
+    SkeletonSample parts = *left;
+    parts += *right;
+    worst = std::max(worst, difference(*whole, parts));
+    ++cut;
+  }
+  std::cout << "  worst relative difference of " << cut << ": " << worst << '\n';
+  EXPECT_GT(cut, 500);
+  EXPECT_LE(worst, 1e-10);
 }
 
 TEST(Triangle, WithoutAreaHasNoField) {

@@ -1,0 +1,22 @@
+// The two ways to the field of a triangle; internal to skeleton/, and for tests of one against the other.
+#pragma once
+
+#include <optional>
+
+#include "field/description/field_node.h"
+#include "field/skeleton/skeleton_sample.h"
+
+namespace marrow {
+
+/// Gauss-Legendre over lines parallel to a side, each line in closed form; for any radii. Beside a wide triangle some
+/// 10^4 nodes.
+template <Derivatives>
+SkeletonSample triangle_by_lines(const TriangleSkeleton&, const Vec3d& p, int family_degree);
+
+/// Integrals along its three sides, some hundred nodes each; for one radius.   [field-maths 3.4]
+/// Nothing where the radius varies, and where the triangle is narrow against its distance from p, so that what its sides
+/// give would cancel: there lines are few.
+template <Derivatives>
+std::optional<SkeletonSample> triangle_by_sides(const TriangleSkeleton&, const Vec3d& p, int family_degree);
+
+}  // namespace marrow
