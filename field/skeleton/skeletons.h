@@ -19,7 +19,7 @@ template <Derivatives>
 SkeletonSample segment_field(const SegmentSkeleton&, const Vec3d& p, int family_degree);
 
 /// Integral of the kernel over the triangle, radius linear; relative error below 1e-12. A triangle without area has no
-/// field. Costs some hundred lines of segment_field each; more near the triangle.   [field-maths 3.4]
+/// field. Some hundred nodes along each side where p is near, else some lines of segment_field.   [field-maths 3.4]
 template <Derivatives>
 SkeletonSample triangle_field(const TriangleSkeleton&, const Vec3d& p, int family_degree);
 

@@ -13,9 +13,9 @@ namespace marrow {
 template <Derivatives>
 SkeletonSample triangle_by_lines(const TriangleSkeleton&, const Vec3d& p, int family_degree);
 
-/// Integrals along its three sides, some hundred nodes each; for one radius.   [field-maths 3.4]
-/// Nothing where the radius varies, and where the triangle is narrow against its distance from p, so that what its sides
-/// give would cancel: there lines are few.
+/// Integrals along its three sides, some hundred nodes each.   [field-maths 3.4; tapered_plate.h]
+/// Nothing where the triangle is narrow against its distance from p, so that what its sides give would cancel: there
+/// lines are few. Nor where a radius that varies would take more than three digits.
 template <Derivatives>
 std::optional<SkeletonSample> triangle_by_sides(const TriangleSkeleton&, const Vec3d& p, int family_degree);
 
