@@ -35,11 +35,22 @@ Vec3<Interval> gradient_of(const SumBounds& sum, const PartialBounds& by, const 
   return gradient;
 }
 
+// The same along a stretch.
+Interval slope_along(const SumBounds& sum, const PartialBounds& by, const Vec3<Interval>& S, const Interval& G,
+                     const Vec3<Interval>& alpha_gradient) {
+  Interval G_slope, alpha_slope;
+  for (std::size_t i = 0; i < 3; ++i) {
+    G_slope += clamped(S[i] / G, {-1, 1}) * sum.S_along(i);
+    alpha_slope += alpha_gradient[i] * Interval(sum.stretch()->direction[i]);
+  }
+  return by.df * sum.f_along() + by.dG * G_slope + by.dalpha * alpha_slope;
+}
+
 }  // namespace
 
-BlendBounds blend_bounds(const BlendField& blend, const Box3& box, Wanted wanted) {
+BlendBounds blend_bounds(const BlendField& blend, const Box3& box, Wanted wanted, const Stretch* stretch) {
   if (!is_finite(box.center()) || !is_finite(box.size())) return {{0, inf}, unknown};
-  const SumBounds sum(blend, box, wanted);
+  const SumBounds sum(blend, box, wanted, stretch);
   return blend_bounds(blend, sum, alpha_bounds(blend, sum, box));
 }
 
@@ -56,7 +67,9 @@ BlendBounds blend_bounds(const BlendField& blend, const SumBounds& sum, const An
   BlendBounds b{.value = corrected(blend, alpha, f, G), .gradient = unknown};
   if (alpha.lo < 0 || !sum.has_slopes()) return b;
   const Correction least({blend.kernel, blend.degree, blend.kernel_shape}, alpha.lo, blend.cavity, blend.projection);
-  b.gradient = gradient_of(sum, partial_bounds(blend, least, alpha, b.value, f, G), S, G, angle.gradient);
+  const PartialBounds by = partial_bounds(blend, least, alpha, b.value, f, G);
+  if (sum.stretch() != nullptr) b.along = slope_along(sum, by, S, G, angle.gradient);
+  else b.gradient = gradient_of(sum, by, S, G, angle.gradient);
   return b;
 }
 

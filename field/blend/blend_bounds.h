@@ -10,14 +10,15 @@ namespace marrow {
 
 struct BlendBounds {
   Interval value;
-  Vec3<Interval> gradient;  ///< of the corrected field, everywhere in the box
+  Vec3<Interval> gradient;                  ///< of the corrected field, everywhere in the box
+  Interval along = Interval::everything();  ///< of a stretch, its slope along the direction
 };
 
 /// From one exact sample in the middle of the box and bounds of the derivatives of each primitive, which follow from
 /// its least distance: widths shrink with the square of the box for the sums, linearly for the corrected field.
 /// Boxes that reach a skeleton have no upper bound.
 /// For Wanted::Value alone the gradient may be everything.
-BlendBounds blend_bounds(const BlendField&, const Box3&, Wanted = Wanted::Slopes);
+BlendBounds blend_bounds(const BlendField&, const Box3&, Wanted = Wanted::Slopes, const Stretch* = nullptr);
 /// The same from bounds of the sums and of the angle.
 BlendBounds blend_bounds(const BlendField&, const SumBounds&, const AngleBounds&);
 

@@ -2,6 +2,7 @@
 // that falls with the distance.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "field/blend/steepest_slope.h"
 #include "field/blend/sum_bounds.h"
@@ -57,11 +58,12 @@ double most_changed(const Profile& profile, const Kernel& kernel, double step) {
 
 // How much of a skeleton, over a radius to the power of its dimension, may come into the support or leave it on a way
 // of rho: that whose distance differs from R radii by so much. Along a segment, d^2 = (R radius + by)^2 has the roots
-// (R slope c +- sqrt(c^2 - (1 - R^2 slope^2) h^2)) / (1 - R^2 slope^2) from the foot, c = R radius_f + by.
-double crossing(const PointSkeleton& s, const Vec3d& p, double rho, double R) {
+// (R slope c +- sqrt(c^2 - (1 - R^2 slope^2) h^2)) / (1 - R^2 slope^2) from the foot, c = R radius_f + by. `anywhere`:
+// from all places that lie along the segment from p.
+double crossing(const PointSkeleton& s, const Vec3d& p, double rho, double R, bool) {
   return std::fabs(length(p - s.at) - R * s.radius) <= rho * (1 + 1e-9) + 1e-12 * s.radius ? 1 : 0;
 }
-double crossing(const SegmentSkeleton& s, const Vec3d& p, double rho, double R) {
+double crossing(const SegmentSkeleton& s, const Vec3d& p, double rho, double R, bool anywhere) {
   const double along = length(s.to - s.from), slope = (s.radius_to - s.radius_from) / along;
   const double open = 1 - square(R * slope);
   if (!(open > 0)) return along / least_radius(s);
@@ -71,7 +73,8 @@ double crossing(const SegmentSkeleton& s, const Vec3d& p, double rho, double R) 
     const double c = R * (s.radius_from + slope * foot) + by, under = square(c) - open * h_squared;
     if (!(c > 0 && under > 0)) return 0.0;
     const auto place = [&](double side) {
-      return std::clamp(foot + (R * slope * c + side * std::sqrt(under)) / open, 0.0, along);
+      const double at = foot + (R * slope * c + side * std::sqrt(under)) / open;
+      return anywhere ? at : std::clamp(at, 0.0, along);
     };
     return place(1) - place(-1);
   };
@@ -79,7 +82,7 @@ double crossing(const SegmentSkeleton& s, const Vec3d& p, double rho, double R) 
   return std::max(0.0, chord(slack) - chord(-slack)) / least_radius(s);
 }
 // Not known; their samples have no J.
-double crossing(const auto&, const Vec3d&, double, double) { return inf; }
+double crossing(const auto&, const Vec3d&, double, double, bool) { return inf; }
 
 // How far the second derivatives of the kernel change over a scaled step, of what either support `held`
 // and where `crossed` of it comes in or goes, at most: with w = 1 - y they are -a w^(h-1) + b w^(h-2) v v^T, a =
@@ -93,6 +96,33 @@ double bend_changes(const Profile& profile, const Kernel& kernel, double step, d
   const double at_edge = h > 2 ? held * change(h - 2) : crossed;
   return (held * (a * change(h - 1) + 2 * b * R * step) + b * R * R * at_edge) / profile.normalisation() * (1 + 1e-9);
 }
+
+// A stretch beside a straight skeleton of one radius. Along that, f changes by the kernel at its ends alone: with x the
+// scaled distance of an end, y = x^2 / R^2 and h = m/2, its first derivatives are at most 2h/R (1-y)^(h-1), its second
+// ones 2h/R^2 (1-y)^(h-1) + 4h(h-1)/R^2 (1-y)^(h-2).
+struct Beside {
+  double across;
+  double ends_bent = 0, ends_J_changes = 0;
+};
+std::optional<Beside> beside(const SegmentSkeleton& s, const Profile& profile, const Kernel& kernel, const Vec3d& p,
+                             const Stretch* stretch) {
+  if (stretch == nullptr || s.radius_from != s.radius_to || profile.degree() < 4) return {};
+  const Vec3d u = (s.to - s.from) / length(s.to - s.from), &half = stretch->half;
+  Beside b{length(half - u * dot(half, u)) + stretch->slack + 1e-15 * length(half)};
+  const double R = kernel.shape, h = 0.5 * profile.degree(), tau = s.radius_from;
+  for (const Vec3d& end : {s.from, s.to}) {
+    const Vec3d to_end = end - p;
+    const double way = std::clamp(dot(to_end, half) / length_squared(half), -1.0, 1.0);
+    const double nearest = (length(to_end - half * way) - stretch->slack) * (1 - 1e-12) / (R * tau);
+    const double within = std::max(0.0, 1 - square(std::max(0.0, nearest)));  // 1 - y
+    if (within == 0) continue;
+    const double lower = pow(within, h - 2), scale = 2 * h / (R * profile.normalisation() * tau * tau) * (1 + 1e-9);
+    b.ends_bent += scale * within * lower;
+    b.ends_J_changes += scale / R * (within + 2 * (h - 1)) * lower;
+  }
+  return b;
+}
+std::optional<Beside> beside(const auto&, const Profile&, const Kernel&, const Vec3d&, const Stretch*) { return {}; }
 
 }  // namespace
 
@@ -109,9 +139,12 @@ void SumBounds::add_compact(const BlendField& blend) {
       const double held = share(s, reach), least = least_radius(s), largest = largest_radius(s);
       const double per_length = steep * held / least * (1 + 1e-9);
       if (const double bend = held_bend(profile, kernel, s, held); bend < inf) {
-        const double crossed = crossing(s, center_, rho_, kernel.shape);
-        const double changes = bend_changes(profile, kernel, rho_ / least, share(s, reach + rho_), crossed) / least;
-        add(sample, Smooth{per_length, bend / (least * least), largest, changes});
+        const auto along = beside(s, profile, kernel, center_, stretch());
+        const double across = along ? along->across : rho_;
+        const double crossed = crossing(s, center_, across, kernel.shape, along.has_value());
+        const double changes = bend_changes(profile, kernel, across / least, share(s, reach + across), crossed) / least;
+        add(sample, Smooth{per_length, bend / (least * least), largest, across, changes, along ? along->ends_bent : 0,
+                           along ? along->ends_J_changes : 0});
         continue;
       }
       const double f = sample.value, by = per_length * rho_ + compact_error * f, longest = per_length * largest;

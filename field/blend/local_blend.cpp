@@ -100,9 +100,9 @@ LocalBlend::Sample LocalBlend::evaluate(const Vec3d& p) const {
   return {c.value, gradient};
 }
 
-BlendBounds LocalBlend::bounds(const Box3& box, Wanted wanted) const {
-  if (!is_finite(box.center()) || !is_finite(box.size())) return blend_bounds(blend_, box, wanted);
-  SumBounds sum(rest_, box, wanted);
+BlendBounds LocalBlend::bounds(const Box3& box, Wanted wanted, const Stretch* stretch) const {
+  if (!is_finite(box.center()) || !is_finite(box.size())) return blend_bounds(blend_, box, wanted, stretch);
+  SumBounds sum(rest_, box, wanted, stretch);
   for_each_sums([&](const SourceSums& s) { sum.add(s); });
   return blend_bounds(blend_, sum, {blend_.alpha, {}});
 }

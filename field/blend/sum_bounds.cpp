@@ -20,10 +20,15 @@ Interval pad(double x, double by) { return {rounding::down(x - by), rounding::up
 
 }  // namespace
 
-SumBounds::SumBounds(const Box3& box)
-    : box_(box), center_(box.center()), rho_(0.5 * length(box.size()) * (1 + 1e-15)) {}
+SumBounds::SumBounds(const Box3& box, const Stretch* stretch)
+    : box_(box), center_(box.center()), rho_(0.5 * length(box.size()) * (1 + 1e-15)) {
+  if (stretch == nullptr) return;
+  stretch_ = *stretch;
+  rho_ = length(stretch->half) * (1 + 1e-15) + stretch->slack;
+}
 
-SumBounds::SumBounds(const BlendField& blend, const Box3& box, Wanted wanted) : SumBounds(box) {
+SumBounds::SumBounds(const BlendField& blend, const Box3& box, Wanted wanted, const Stretch* stretch)
+    : SumBounds(box, stretch) {
   has_slopes_ = wanted == Wanted::Slopes;
   if (blend.kernel == KernelFamily::Inverse) add_inverse(blend);
   if (blend.kernel == KernelFamily::Cauchy) add_cauchy(blend);
@@ -53,23 +58,25 @@ void SumBounds::add(const SkeletonSample& s, double distance, double radius, int
   S_error_ += sample_error * (m * s.value * radius / distance);
 }
 
-// To second order, or, in boxes so large that it says less, to first.
+// To second order, or, in boxes so large that it says less, to first. With v = a u + w, u along the primitive, |v H v|
+// is at most most_bent w^2 + ends_bent (a^2 + 2 a w).
 void SumBounds::add(const SkeletonSample& s, const Smooth& b) {
   const double longest = b.steepest * b.radius, most_J = b.most_bent * b.radius;
-  const double J_by = std::min(b.J_changes + compact_error * most_J, most_J);
-  const double S_by = J_by * rho_ + compact_error * longest;
+  const double J_by = std::min(b.J_changes + b.ends_J_changes * rho_ + compact_error * most_J, most_J);
+  const double S_by = J_by * b.across + b.ends_J_changes * rho_ * rho_ + compact_error * longest;
+  const double bent = b.most_bent * b.across * b.across + b.ends_bent * rho_ * (rho_ + 2 * b.across);
   log_slope_ = inf;
-  low_ += std::max(0.0, s.value * (1 - compact_error) - b.steepest * rho_);
   f_ += s.value;
   error_ += compact_error * s.value;
-  if (0.5 * b.most_bent * rho_ < b.steepest) {
+  if (0.5 * bent < b.steepest * rho_) {
     gradient_ += s.gradient;
-    second_ += b.most_bent;
-    slope_error_ += compact_error * b.steepest;
+    error_ += 0.5 * bent;
+    slope_error_ += b.most_bent * b.across + b.ends_bent * rho_ + compact_error * b.steepest;
   } else {
     error_ += b.steepest * rho_;
     slope_error_ += b.steepest;
   }
+  low_ += std::max(0.0, s.value * (1 - compact_error) - b.steepest * rho_);
   const bool is_near = S_by < longest;
   if (is_near) S_ += s.si_gradient;
   if (is_near && J_by < most_J) J_ += s.si_jacobian;
@@ -125,10 +132,34 @@ void SumBounds::add(const Between& b) {
 
 Interval SumBounds::side(std::size_t i) const { return Interval(box_.lower[i], box_.upper[i]) - Interval(center_[i]); }
 
+// How much something of this slope changes from the middle on.
+Interval SumBounds::way(const Vec3d& slope) const {
+  const double by = std::fabs(dot(slope, stretch_->half)) + length(slope) * (stretch_->slack + 1e-15 * rho_);
+  return {rounding::down(-by), rounding::up(by)};
+}
+
+Interval SumBounds::f_along() const {
+  const Vec3d& d = stretch_->direction;
+  const double size = length(d) * (1 + 1e-12);
+  Interval x = pad(dot(gradient_, d), size * (second_ * rho_ + slope_error_ + 1e-14 * length(gradient_)));
+  for (std::size_t i = 0; i < 3; ++i) x += between_.gradient[i] * Interval(d[i]);
+  return x;
+}
+
+Interval SumBounds::S_along(std::size_t i) const {
+  const Vec3d& d = stretch_->direction;
+  const double size = length(d) * (1 + 1e-12), row = length(J_.rows[i]);
+  Interval x = pad(dot(J_.rows[i], d), size * (S_second_ * rho_ + sample_error * row + J_error_));
+  for (std::size_t j = 0; j < 3; ++j) x += between_.J[i][j] * Interval(d[j]);
+  return x;
+}
+
 Interval SumBounds::f() const {
   if (unbounded_) return {low_ * (1 - 1e-12), inf};
   Interval x = pad(f_, error_ + 0.5 * second_ * rho_ * rho_);
-  for (std::size_t i = 0; i < 3; ++i) x += Interval(gradient_[i]) * side(i);
+  if (stretch_) x += way(gradient_);
+  else
+    for (std::size_t i = 0; i < 3; ++i) x += Interval(gradient_[i]) * side(i);
   return {std::max({0.0, x.lo, low_ * (1 - 1e-12)}), std::max(0.0, x.hi)};
 }
 
@@ -143,7 +174,9 @@ Vec3<Interval> SumBounds::S() const {
   const double by = S_error_ + 0.5 * S_second_ * rho_ * rho_;
   for (std::size_t i = 0; i < 3; ++i) {
     s[i] = pad(S_[i], by);
-    for (std::size_t j = 0; j < 3; ++j) s[i] += Interval(J_.rows[i][j]) * side(j);
+    if (stretch_) s[i] += way(J_.rows[i]);
+    else
+      for (std::size_t j = 0; j < 3; ++j) s[i] += Interval(J_.rows[i][j]) * side(j);
   }
   return s;
 }

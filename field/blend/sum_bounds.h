@@ -11,6 +11,13 @@
 
 namespace marrow {
 
+/// A straight way through a box, from its middle to either end, as rays take it.
+struct Stretch {
+  Vec3d half;       ///< from the middle to one end; the other lies as far on the other side
+  Vec3d direction;  ///< parallel to `half`: what slopes along it are for
+  double slack;     ///< by which its places may lie off, as they are rounded
+};
+
 /// What is asked for: slopes of primitives by distance cost more than all else.
 enum class Wanted { Value, Slopes };
 
@@ -21,8 +28,9 @@ class SumBounds {
   /// Relative error of integrals under the compact kernel, over what they could be at most.
   static constexpr double compact_error = 1e-10;
 
-  explicit SumBounds(const Box3&);
-  SumBounds(const BlendField&, const Box3&, Wanted = Wanted::Slopes);
+  explicit SumBounds(const Box3&, const Stretch* = nullptr);
+  /// Of places in the box, or only of those on a stretch through it.
+  SumBounds(const BlendField&, const Box3&, Wanted = Wanted::Slopes, const Stretch* = nullptr);
 
   /// A primitive that is a positive sum of |p - q|^-m with all q at least `distance` away from the middle and radii up
   /// to `radius`. Its k-th derivatives are at most m (m+1) ... (m+k-1) / distance^k times itself, and within rho of the
@@ -37,10 +45,13 @@ class SumBounds {
     std::optional<PrimitiveSlopes> slopes{};
   };
   void add(const Between&);
-  /// A primitive of which the largest first and second derivatives anywhere are known, up to a radius.
+  /// A primitive of which the largest first and second derivatives anywhere are known, up to a radius; and how far
+  /// places are from the middle across it, where along it only its ends tell anything.
   struct Smooth {
     double steepest, most_bent, radius;
-    double J_changes;  ///< by which J may differ between the middle and any place of the box
+    double across;
+    double J_changes;                          ///< by which J may differ between the middle and any place as far across
+    double ends_bent = 0, ends_J_changes = 0;  ///< what ends add to its second derivatives, and to J over a length
   };
   void add(const SkeletonSample&, const Smooth&);
   /// Sources: the same from one remainder for all of them.
@@ -58,11 +69,16 @@ class SumBounds {
   Vec3<Interval> S() const;
   /// d S_i / d p_j
   Interval J(std::size_t i, std::size_t j) const;
+  /// The stretch, if it is all that is asked for; then slopes of f and of S_i along its direction.
+  const Stretch* stretch() const { return stretch_ ? &*stretch_ : nullptr; }
+  Interval f_along() const;
+  Interval S_along(std::size_t i) const;
   /// Largest |grad ln f_i| of any primitive anywhere in the box.
   double log_slope() const { return log_slope_; }
 
  private:
   Interval side(std::size_t i) const;
+  Interval way(const Vec3d& slope) const;
   template <class Skeleton, class Sample>
   void add_integral(const BlendField&, const Skeleton&, double distance, int m, const Sample&);
   void add_inverse(const BlendField&);
@@ -71,6 +87,7 @@ class SumBounds {
   void add_distances(const BlendField&);
 
   Box3 box_;
+  std::optional<Stretch> stretch_;
   Vec3d center_;
   double rho_;
   double f_ = 0, low_ = 0, error_ = 0, slope_error_ = 0, S_error_ = 0, second_ = 0, S_second_ = 0, log_slope_ = 0;

@@ -110,6 +110,52 @@ TEST(BlendBounds, HoldForKernelsOfFiniteHeight) {
   EXPECT_GT(sloped, 5000);
 }
 
+// Half of them along a segment of the blend, where the compact kernel knows what changes.
+Stretch stretch_near(Random& random, const BlendField& blend, Vec3d& middle) {
+  const double size = pow(10, random.between(-5, 0));
+  Vec3d way = normalize(random.vector(1)) * size;
+  if (!blend.segments.skeletons.empty() && random.between(0, 1) < 0.5) {
+    const SegmentSkeleton& s = blend.segments.skeletons[0];
+    const Vec3d along = normalize(s.to - s.from).vec(), beside = normalize(cross(along, random.vector(1))).vec();
+    middle = lerp(s.from, s.to, random.between(-0.3, 1.3)) + beside * (s.radius_from * random.between(0.5, 3));
+    way = along * size + beside * (size * pow(10, random.between(-8, -1)));
+  }
+  return {way, way * random.between(0.5, 3), 1e-14};
+}
+
+TEST(BlendBounds, HoldAlongStretches) {
+  Random random(56);
+  int bounded = 0, sloped = 0;
+  for (int i = 0; i < 4000; ++i) {
+    BlendField blend = i % 2 == 0 ? random_blend(random) : blend_of_finite_height(random);
+    if (blend.alpha < 0 || !blend.cavity) continue;
+    if (i % 4 == 1)
+      for (SegmentSkeleton& s : blend.segments.skeletons) s.radius_to = s.radius_from;
+    Vec3d middle = random.vector(2);
+    const Stretch stretch = stretch_near(random, blend, middle);
+    Box3 box;
+    box.include(middle - stretch.half);
+    box.include(middle + stretch.half);
+    const BlendBounds bounds = blend_bounds(blend, box, Wanted::Slopes, &stretch);
+    bounded += bounds.value.hi < 1e300;
+    sloped += bounds.along.width() < 1e300;
+    for (int k = 0; k < 8; ++k) {
+      const BlendSample s = evaluate(blend, box.center() + stretch.half * random.between(-1, 1));
+      if (s.sum > 1e50) continue;
+      ASSERT_TRUE(bounds.value.contains(s.corrected))
+          << "case " << i << ": " << s.corrected << " not in [" << bounds.value.lo << ", " << bounds.value.hi
+          << "], degree " << blend.degree;
+      const double slope = dot(s.corrected_gradient, stretch.direction);
+      const double slack = 1e-8 * length(stretch.direction) * (1 + length(s.corrected_gradient));
+      ASSERT_TRUE(bounds.along.lo - slack <= slope && slope <= bounds.along.hi + slack)
+          << "case " << i << ": " << slope << " not in [" << bounds.along.lo << ", " << bounds.along.hi << "], degree "
+          << blend.degree;
+    }
+  }
+  EXPECT_GT(bounded, 1500);
+  EXPECT_GT(sloped, 1200);
+}
+
 // To nothing in the end, but for the edge of a support that an arc follows.
 TEST(BlendBounds, NarrowForKernelsOfFiniteHeight) {
   Random random(55);

@@ -96,6 +96,7 @@ CrossingSearch traced(const TreeTracer& tracer, const Ray& ray) {
     CellLog log;
     const auto hit = tracer.first_hit(cell, ray, false, log);
     first.undecided = std::min(first.undecided, log.undecided);
+    first.evaluations += log.evaluations;
     if (hit && (!first.t || hit->t < *first.t)) first.t = hit->t;
   }
   return first;
@@ -180,6 +181,49 @@ TEST(TreeTracer, TellsATouchBeforeAnyEndOfTheRay) {
   std::cout << "  " << touches << " touches, " << missed << " of them missed\n";
   EXPECT_GT(touches, 40);
   EXPECT_EQ(missed, 0);
+}
+
+FieldTree compact_tube(const Vec3d& end, double radius, const Kernel& kernel) {
+  FieldDescription field;
+  Primitive one;
+  one.skeleton = SegmentSkeleton{-end, end, radius, radius};
+  const FieldNodeId tube = field.add({.what = one, .where = {}});
+  const FieldNodeId blend = field.add({.what = Blend{.kernel = kernel, .of = {tube}}, .where = {}});
+  // A Ricci blend of one keeps the root a general node.
+  field.root = field.add({.what = GeneralNode{.node = boxed(Ricci{1}), .of = {blend}, .material = {}}, .where = {}});
+  return compile(field)->trees()[0];
+}
+
+// Along a tube under the compact kernel nothing changes but at its ends, whatever way the tube goes: rays beside it or
+// just below its surface are decided at once.
+TEST(TreeTracer, DecidesRaysAlongACompactTube) {
+  Random random(79);
+  std::uint32_t most = 0;
+  int hits = 0, undecided = 0, wrong = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3d along = normalize(i % 3 == 0 ? Vec3d{1, 0, 0} : random.vector(1)).vec();
+    const Vec3d across = normalize(cross(along, random.vector(1))).vec();
+    const double radius = random.between(0.05, 0.3);
+    const FieldTree blend = compact_tube(along * 2, radius, {KernelFamily::Compact, random.whole(4, 9), 2});
+    double inside = 0, outside = 3 * radius;
+    for (int step = 0; step < 100; ++step)
+      (value(blend, across * (0.5 * (inside + outside))) >= 1 ? inside : outside) = 0.5 * (inside + outside);
+    const auto tracer = TreeTracer::make(blend);
+    ASSERT_TRUE(tracer) << tracer.why()[0].message;
+    const double beyond = pow(10, random.between(-8, -3)) * (i % 2 == 0 ? 1 : -1);
+    const Ray ray{
+        .origin = across * (inside * (1 + beyond)) - along * 5, .direction = normalize(along), .t_min = 0, .t_max = 10};
+    const CrossingSearch found = traced(*tracer, ray);
+    most = std::max(most, found.evaluations);
+    hits += found.t.has_value();
+    wrong += found.t.has_value() != (beyond < 0);
+    undecided += found.undecided < Box3::inf;
+  }
+  std::cout << "  " << hits << " hits, " << wrong << " wrong, " << undecided << " undecided, evaluations " << most
+            << '\n';
+  EXPECT_EQ(wrong, 0);
+  EXPECT_EQ(undecided, 0);
+  EXPECT_LT(most, 1000u);
 }
 
 // A bend cuts space behind the centre of its circle: rays across the cut are decided all the same.
