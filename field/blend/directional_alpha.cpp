@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "field/blend/direction_tensor.h"
+#include "field/blend/least_direction.h"
 
 namespace marrow {
 namespace {
@@ -18,7 +19,7 @@ struct Hair {
 
 Hair hair_of(const Strand& s) {
   const double length = marrow::length(s.direction);
-  const bool has_direction = length > 0 && std::isfinite(length);
+  const bool has_direction = length > least_direction * s.field && std::isfinite(length);
   return {s.field, s.bounds.most - s.bounds.least, s.bounds.least, has_direction ? s.direction / length : Vec3d{},
           has_direction ? 1 / length : 0};
 }
@@ -97,7 +98,7 @@ HessianJet directional_alpha(std::span<const SecondOrderStrand> strands) {
   for (const SecondOrderStrand& s : strands) {
     const double span = s.bounds.most - s.bounds.least, least = s.bounds.least;
     const HessianJet size = length(s.direction);
-    const bool has_direction = size.value > 0 && std::isfinite(size.value);
+    const bool has_direction = size.value > least_direction * s.field.value && std::isfinite(size.value);
     const Vec3<HessianJet> u = has_direction ? s.direction / size : Vec3<HessianJet>{};
     numerator += s.field * (span * plain.along(u) + spans.along(u) + least * field_before + least_before);
     denominator += 2.0 * s.field * field_before;

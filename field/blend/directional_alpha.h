@@ -22,7 +22,7 @@ struct DirectionBounds {
 struct Strand {
   double field = 0;      ///< f_i, the sum of its segments
   Vec3d field_gradient;  ///< used for the gradient alone
-  Vec3d direction;       ///< sum f_s u_s over its segments; any length; 0: no direction
+  Vec3d direction;       ///< sum f_s u_s over its segments; shorter than least_direction field: none
   Matrix3 direction_jacobian;
   DirectionBounds bounds;
 };
@@ -39,7 +39,7 @@ AlphaSample directional_alpha(std::span<const Strand>, bool with_gradient);
 /// The same strands over numbers with second derivatives.
 struct SecondOrderStrand {
   HessianJet field;
-  Vec3<HessianJet> direction;  ///< of any length; 0: none
+  Vec3<HessianJet> direction;  ///< as of a Strand
   DirectionBounds bounds;
 };
 HessianJet directional_alpha(std::span<const SecondOrderStrand>);

@@ -229,6 +229,39 @@ TEST(Strands, OfWeakOthersTellTheAngle) {
   }
 }
 
+// What is left of the directions of a strand that runs back along itself is rounding: it has none, and crosses all.
+TEST(Strands, ThatRunBackHaveNoDirection) {
+  Random random(98);
+  int places = 0;
+  double largest = 0;
+  for (int scene = 0; scene < 6; ++scene) {
+    const int degree = random.whole(3, 8);
+    BlendField blend = random_scene(random, {degree, 1}, 0);
+    const Vec3d a = random.vector(1), b = random.vector(1), beside = random.vector(1e-7);
+    const double radius = random.between(0.1, 0.3);
+    const auto add = [&](const Vec3d& from, const Vec3d& to, double tau, std::uint32_t strand) {
+      blend.segments.add({from, to, tau, tau}, {});
+      blend.segments.strands.push_back(strand);
+    };
+    add(a, b, radius, 0);
+    add(b, scene % 2 == 0 ? a : a + beside, radius, 0);
+    add(random.vector(1), random.vector(1), 0.2, 1);
+    blend.direction_bounds.assign(2, bounds);
+    const Crowd crowd(std::move(blend));
+    for (const auto& cell : crowd.stage.cells) {
+      const Block block(crowd.context, cell);
+      const Vec3d x = random.vector(1);
+      const BlendSample exact = evaluate(crowd.stage.field, block.center() + x * block.half());
+      if (std::fabs(exact.corrected - 1) > 0.2) continue;
+      ++places;
+      largest = std::max(largest, std::fabs(block.share(x).share - exact_share(crowd, exact)));
+    }
+  }
+  std::cout << "  " << places << " places, shares are off by " << largest << " at most\n";
+  EXPECT_GT(places, 100);
+  EXPECT_LT(largest, 1e-4);
+}
+
 // In balls beside one strand and between several, of several segments each.
 TEST(Strands, FewOfThemCount) {
   Random random(97);

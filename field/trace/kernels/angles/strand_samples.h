@@ -103,7 +103,7 @@ void add_strand(const StrandSamples& samples, float* tensors) {
   const V16 f = s[0], by_f = select(f > 0.0F, 1.0F / f, V16{});  // squares of weak fields vanish in floats
   for (int k = 1; k < 4; ++k) s[k] = s[k] * by_f;
   const V16 size2 = s[1] * s[1] + s[2] * s[2] + s[3] * s[3];
-  const auto finite = f - f == 0.0F, directed = finite & (size2 > 0.0F);
+  const auto finite = f - f == 0.0F, directed = finite & (size2 > least_direction_squared);
   const V16 inverse = select(directed, 1.0F / root_of(size2), V16{});
   V16 power[3][9];  // of the components of u
   for (int k = 0; k < 3; ++k) {

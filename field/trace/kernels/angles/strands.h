@@ -1,6 +1,9 @@
 // The share of the range of angles from the directions of strands [Zanni et al. 2015, eq. 15], at sixteen places of a
 // cube. Part of block_kernels_<set>.cpp.
 
+// Of a strand over its f.
+constexpr float least_direction_squared = static_cast<float>(least_direction * least_direction);
+
 // A number at the places, and its derivatives by x, y and z.
 struct Slopes16 {
   V16 value{}, slope[3] = {};
@@ -117,7 +120,7 @@ inline void set_strand(const Slopes16 (&s)[4], Strand16& out) {
   V16 v[3];
   for (int k = 0; k < 3; ++k) v[k] = s[1 + k].value * by_f;
   const V16 size2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-  const V16 inverse = select(counts & (size2 > 0.0F), 1.0F / root_of(size2), V16{});
+  const V16 inverse = select(counts & (size2 > least_direction_squared), 1.0F / root_of(size2), V16{});
   for (int k = 0; k < 3; ++k) out.u[k].value = v[k] * inverse;
   for (int e = 0; e < 3; ++e) {
     V16 slope[3], along{};
