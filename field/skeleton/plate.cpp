@@ -15,7 +15,8 @@ double distance_from_foot(const Plate::Side& s) {
 }  // namespace
 
 std::optional<Plate> plate_seen_from(const TriangleSkeleton& t, const Vec3d& p) {
-  Plate plate{.unit = std::max({t.radii[0], t.radii[1], t.radii[2]})};
+  Plate plate;
+  plate.unit = std::max({t.radii[0], t.radii[1], t.radii[2]});
   std::array<Vec3d, 3> v;
   std::array<double, 3> tau;
   for (std::size_t i = 0; i < 3; ++i) {

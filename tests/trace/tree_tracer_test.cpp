@@ -188,7 +188,10 @@ FieldTree compact_tube(const Vec3d& end, double radius, const Kernel& kernel) {
   Primitive one;
   one.skeleton = SegmentSkeleton{-end, end, radius, radius};
   const FieldNodeId tube = field.add({.what = one, .where = {}});
-  const FieldNodeId blend = field.add({.what = Blend{.kernel = kernel, .of = {tube}}, .where = {}});
+  Blend alone;
+  alone.kernel = kernel;
+  alone.of = {tube};
+  const FieldNodeId blend = field.add({.what = std::move(alone), .where = {}});
   // A Ricci blend of one keeps the root a general node.
   field.root = field.add({.what = GeneralNode{.node = boxed(Ricci{1}), .of = {blend}, .material = {}}, .where = {}});
   return compile(field)->trees()[0];
