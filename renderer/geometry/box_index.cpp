@@ -6,6 +6,8 @@
 
 #include <embree3/rtcore.h>
 
+#include "renderer/geometry/float_margin.h"
+
 namespace marrow {
 namespace {
 
@@ -18,17 +20,18 @@ float above(double v) { return std::nextafter(static_cast<float>(v), std::numeri
 // What Embree wants of boxes, while it builds its hierarchy.
 struct PaddedBoxes {
   const std::vector<Box3>& boxes;
+  Vec3d middle;
   double margin;
 };
 
 void bounds_callback(const RTCBoundsFunctionArguments* a) {
-  const auto& [boxes, margin] = *static_cast<const PaddedBoxes*>(a->geometryUserPtr);
+  const auto& [boxes, middle, margin] = *static_cast<const PaddedBoxes*>(a->geometryUserPtr);
   const Box3& box = boxes[a->primID];
   if (box.empty()) {
     *a->bounds_o = {1, 1, 1, 0, -1, -1, -1, 0};  // Embree leaves it out
     return;
   }
-  const Box3 padded = box.padded(margin);
+  const Box3 padded = Box3{box.lower - middle, box.upper - middle}.padded(margin);
   *a->bounds_o = {below(padded.lower.x), below(padded.lower.y), below(padded.lower.z), 0,
                   above(padded.upper.x), above(padded.upper.y), above(padded.upper.z), 0};
 }
@@ -59,9 +62,10 @@ Result<BoxIndex> BoxIndex::make(RTCDeviceTy* device, std::vector<Box3> boxes) {
   return index;
 }
 
-// Places that are asked for lie within all boxes, so that floats are off by 2^-24 of the largest coordinate at most.
+// Places that are asked for lie within all boxes.
 void BoxIndex::build(RTCDeviceTy* device) {
-  PaddedBoxes padded{boxes_, std::ldexp(4 * largest_coordinate(all_), -24)};
+  middle_ = all_.center();
+  PaddedBoxes padded{boxes_, middle_, margin_of_floats(all_, middle_, 4)};
   margin_ = padded.margin;
   scene_.reset(rtcNewScene(device));
   RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
@@ -82,9 +86,10 @@ void BoxIndex::find(const Vec3d& p, const Visit& visit) const {
     return;
   }
   Search search{*this, p, visit};
-  RTCPointQuery query{.x = static_cast<float>(p.x),
-                      .y = static_cast<float>(p.y),
-                      .z = static_cast<float>(p.z),
+  const Vec3d q = p - middle_;
+  RTCPointQuery query{.x = static_cast<float>(q.x),
+                      .y = static_cast<float>(q.y),
+                      .z = static_cast<float>(q.z),
                       .time = 0,
                       .radius = static_cast<float>(margin_)};
   RTCPointQueryContext context;

@@ -35,6 +35,7 @@ class BoxIndex {
 
   std::vector<Box3> boxes_;
   Box3 all_;
+  Vec3d middle_;       // Embree's origin
   double margin_ = 0;  // that Embree's boxes are padded by
   EmbreeScene scene_;  // none where boxes are few
 };

@@ -38,7 +38,8 @@ struct FloatRays {
 struct BoxKernels {
   struct Bounds {
     double lower[3], upper[3];
-    double margin;  ///< that boxes are padded by
+    double middle[3];  ///< Embree's origin
+    double margin;     ///< that boxes are padded by
   };
   struct Started {
     unsigned in_bounds;  ///< a bit for each ray that comes into the bounds; others get an empty interval

@@ -10,6 +10,7 @@
 #include <embree3/rtcore.h>
 
 #include "renderer/geometry/box_kernels.h"
+#include "renderer/geometry/float_margin.h"
 #include "renderer/geometry/ray_in_boxes.h"
 
 namespace marrow {
@@ -55,7 +56,7 @@ float above(double v) { return std::nextafter(static_cast<float>(v), std::numeri
 
 void bounds_callback(const RTCBoundsFunctionArguments* a) {
   const PartsOfSolid& p = parts_of(a->geometryUserPtr);
-  const Box3& box = p.parts[a->primID].box;
+  const Box3 box{p.parts[a->primID].box.lower - p.middle, p.parts[a->primID].box.upper - p.middle};
   *a->bounds_o = {below(box.lower.x), below(box.lower.y), below(box.lower.z), 0,
                   above(box.upper.x), above(box.upper.y), above(box.upper.z), 0};
 }
@@ -135,13 +136,13 @@ float embree_direction(double component) {
 }
 
 // Makes the ray ready for Embree; false when it misses all boxes.
-bool start(const Box3& bounds, SingleRay& single, RTCRay& out) {
+bool start(const Box3& bounds, const Vec3d& middle, SingleRay& single, RTCRay& out) {
   const Ray& ray = *single.visit.ray;
   single.boxes = {ray, single.visit.last()};
   const StretchInBox inside = single.boxes.in(bounds);
   if (inside.empty()) return false;
   single.t_start = inside.enter;
-  const Vec3d origin = ray.at(inside.enter);
+  const Vec3d origin = ray.at(inside.enter) - middle;
   out.org_x = static_cast<float>(origin.x);
   out.org_y = static_cast<float>(origin.y);
   out.org_z = static_cast<float>(origin.z);
@@ -224,11 +225,13 @@ Result<std::unique_ptr<PartHierarchy>> PartHierarchy::make(RTCDeviceTy* device, 
   Box3 bounds;
   for (const PartsOfSolid& s : h->solids_)
     for (const SolidPart& p : s.parts) bounds.include(p.box);
-  const double margin = bounds.empty() ? 0 : std::ldexp(8 * largest_coordinate(bounds), -24);
+  if (!bounds.empty()) h->middle_ = bounds.center();
+  const double margin = margin_of_floats(bounds, h->middle_, 8);
   h->margin_ = margin;
   h->padded_bounds_ = bounds.padded(margin);
   for (PartsOfSolid& s : h->solids_) {
     for (SolidPart& p : s.parts) p.box = p.box.padded(margin);
+    s.middle = h->middle_;
     attach(device, h->scene_.get(), s);
   }
   rtcCommitScene(h->scene_.get());
@@ -249,7 +252,7 @@ PartHierarchy::Hit PartHierarchy::first_hit(const Ray& ray, std::vector<RayVisit
   single.visit.visits = visits;
   RTCRayHit rayhit{};
   rayhit.hit.geomID = rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  if (!start(padded_bounds_, single, rayhit.ray)) return {};
+  if (!start(padded_bounds_, middle_, single, rayhit.ray)) return {};
   Query q(single);
   rtcIntersect1(scene_.get(), &q, &rayhit);
   return single.visit.best;
@@ -258,7 +261,7 @@ PartHierarchy::Hit PartHierarchy::first_hit(const Ray& ray, std::vector<RayVisit
 PartHierarchy::Hit PartHierarchy::any_hit(const Ray& ray, ObjectId but) const {
   SingleRay single{PartVisit(ray)};
   RTCRay r{};
-  if (!start(padded_bounds_, single, r)) return {};
+  if (!start(padded_bounds_, middle_, single, r)) return {};
   Query q(single);
   q.left_out = but;
   rtcOccluded1(scene_.get(), &q, &r);
@@ -274,7 +277,8 @@ void PartHierarchy::find_parts(std::span<StreamedRay* const> rays) const {
   set_rest(rayhits);
   RTCRay16& r = rayhits.ray;
   const Box3& b = padded_bounds_;
-  const BoxKernels::Bounds bounds{{b.lower.x, b.lower.y, b.lower.z}, {b.upper.x, b.upper.y, b.upper.z}, margin_};
+  const BoxKernels::Bounds bounds{
+      {b.lower.x, b.lower.y, b.lower.z}, {b.upper.x, b.upper.y, b.upper.z}, {middle_.x, middle_.y, middle_.z}, margin_};
   const auto [in_bounds, neighbours] = kernels_.start(
       bounds, together.rays, {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tnear, r.tfar});
   Query q(together);

@@ -1,8 +1,9 @@
 // The parts of solids under one Embree hierarchy.
 //
-// Embree only finds candidate boxes, in float; roots are found and compared in double. Boxes are padded by
-// 8 * 2^-24 * M, M the largest coordinate of boxes and ray origins, so that no rounding of the float traversal can
-// lose a box, on any instruction set; ray origins are moved up to the boxes' bounds to keep M its own size.
+// Embree only finds candidate boxes, in float, with the origin in the middle of them all; roots are found and compared
+// in double. Boxes are padded by 8 * 2^-24 * M, M the largest coordinate of boxes and ray origins from there, and by 16
+// * 2^-52 of the largest one in the scene, so that no rounding of the float traversal can lose a box, on any
+// instruction set; ray origins are moved up to the boxes' bounds to keep M its own size.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +25,7 @@ struct PartsOfSolid {
   const Solid* solid = nullptr;
   ObjectId object;
   std::pmr::vector<SolidPart> parts;  ///< in huge pages
+  Vec3d middle;                       ///< of all solids: Embree's origin
 
   PartsOfSolid(const Solid* s, ObjectId o, const std::vector<SolidPart>& of)
       : solid(s), object(o), parts(of.begin(), of.end(), &huge_pages()) {}
@@ -59,6 +61,7 @@ class PartHierarchy {
   std::vector<std::uint32_t> first_part_;  // the number of each solid's first part, and that of all
   bool traces_packets_ = false;
   Box3 padded_bounds_;  // what rays are clipped to
+  Vec3d middle_;        // Embree's origin
   double margin_ = 0;   // that boxes are padded by
   EmbreeScene scene_;
 };

@@ -58,7 +58,7 @@ inline unsigned start_some(const BoxKernels::Bounds& bounds, RaysAmongBoxes& ray
   const Doubles enter = in ? inside.enter : Doubles{}, late = margin_along(direction, bounds.margin);
   for (int k = 0; k < 3; ++k) {
     const Doubles seen = size_of(direction[k]) < smallest_component ? Doubles{} : direction[k];
-    store(narrowed(in ? origin[k] + direction[k] * enter : Doubles{}), out.origin[k] + first);
+    store(narrowed(in ? origin[k] + direction[k] * enter - bounds.middle[k] : Doubles{}), out.origin[k] + first);
     store(narrowed(seen), out.direction[k] + first);
   }
   const Doubles gone = (load(rays.taken_enter + first) - enter) * (1 - float_share) - late;
