@@ -11,7 +11,7 @@
 
 namespace marrow {
 
-/// A straight way through a box, from its middle to either end, as rays take it.
+/// A straight way through a box, from its middle to either end, as rays take it; lengths as those of the box.
 struct Stretch {
   Vec3d half;       ///< from the middle to one end; the other lies as far on the other side
   Vec3d direction;  ///< parallel to `half`: what slopes along it are for

@@ -1,8 +1,8 @@
 // The parts of solids under one Embree hierarchy.
 //
 // Embree only finds candidate boxes, in float, with the origin in the middle of them all; roots are found and compared
-// in double. Boxes are padded by 8 * 2^-24 * M, M the largest coordinate of boxes and ray origins from there, and by 16
-// * 2^-52 of the largest one in the scene, so that no rounding of the float traversal can lose a box, on any
+// in double. Boxes are padded by 8 * 2^-24 * M, M the largest coordinate of boxes and ray origins from there, and by
+// 2^-48 of the largest one in the scene, so that no rounding of the float traversal can lose a box, on any
 // instruction set; ray origins are moved up to the boxes' bounds to keep M its own size.
 #pragma once
 
