@@ -1,6 +1,7 @@
-// By how much boxes are padded for Embree, which sees them in floats.
+// By how much boxes are padded: for Embree, which sees them in floats, and for our own doubles.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "field/math/box3.h"
@@ -13,6 +14,14 @@ inline double margin_of_floats(const Box3& bounds, const Vec3d& middle, double r
   if (bounds.empty()) return 0;
   const double seen = largest_coordinate({bounds.lower - middle, bounds.upper - middle});
   return std::ldexp(roundings * seen, -24) + std::ldexp(16 * largest_coordinate(bounds), -52);
+}
+
+/// What doubles need of it: rays that pass by what is much smaller than the scene are not to ask for it. A 64th of the
+/// box covers what a ray's own coordinates round, some 10^13 boxes from its origin; 16 roundings those of the box.
+inline double margin_of_doubles(const Box3& box, double margin_of_floats) {
+  const double own = std::ldexp(max_component(box.size()), -6),
+               rounding = std::ldexp(16 * largest_coordinate(box), -52);
+  return std::min(margin_of_floats, std::max(own, rounding));
 }
 
 }  // namespace marrow

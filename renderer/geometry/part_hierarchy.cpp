@@ -56,7 +56,8 @@ float above(double v) { return std::nextafter(static_cast<float>(v), std::numeri
 
 void bounds_callback(const RTCBoundsFunctionArguments* a) {
   const PartsOfSolid& p = parts_of(a->geometryUserPtr);
-  const Box3 box{p.parts[a->primID].box.lower - p.middle, p.parts[a->primID].box.upper - p.middle};
+  const Box3& own = p.parts[a->primID].box;
+  const Box3 box = Box3{own.lower - p.middle, own.upper - p.middle}.padded(p.margin);
   *a->bounds_o = {below(box.lower.x), below(box.lower.y), below(box.lower.z), 0,
                   above(box.upper.x), above(box.upper.y), above(box.upper.z), 0};
 }
@@ -230,8 +231,9 @@ Result<std::unique_ptr<PartHierarchy>> PartHierarchy::make(RTCDeviceTy* device, 
   h->margin_ = margin;
   h->padded_bounds_ = bounds.padded(margin);
   for (PartsOfSolid& s : h->solids_) {
-    for (SolidPart& p : s.parts) p.box = p.box.padded(margin);
+    for (SolidPart& p : s.parts) p.box = p.box.padded(margin_of_doubles(p.box, margin));
     s.middle = h->middle_;
+    s.margin = margin;
     attach(device, h->scene_.get(), s);
   }
   rtcCommitScene(h->scene_.get());

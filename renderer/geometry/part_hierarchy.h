@@ -26,6 +26,7 @@ struct PartsOfSolid {
   ObjectId object;
   std::pmr::vector<SolidPart> parts;  ///< in huge pages
   Vec3d middle;                       ///< of all solids: Embree's origin
+  double margin = 0;                  ///< by which Embree's boxes are padded beyond those of the parts
 
   PartsOfSolid(const Solid* s, ObjectId o, const std::vector<SolidPart>& of)
       : solid(s), object(o), parts(of.begin(), of.end(), &huge_pages()) {}
