@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 #include "field/kernel/inverse_family.h"
 #include "field/math/elementary.h"
 #include "field/math/matrix3.h"
+#include "field/skeleton/border_terms.h"
 
 namespace marrow {
 namespace {
@@ -44,38 +46,22 @@ struct SideSums {
   Matrix3 place_steeper;                     // int x out^T tau^n d^-(n+3)
 };
 
-// Adds what a node of a side gives of `plane`, as in triangle_sides.cpp. For m = 2 the integral from the foot is the
-// logarithm of d / h.
-void add_from_foot(double flat, double h2, double weight, const Exponents& exponents, ByExponent& sum) {
+// Adds what a node of a side gives of `plane`. For m = 2 the integral over the distance from the foot is a logarithm:
+// of d / h, or of d over the least d.
+void add_from_foot(double flat, double h2, double weight, const Exponents& exponents, std::span<double> sums) {
   const double inverse = 1 / (flat + h2), x = h2 * inverse, factor = weight * inverse;
-  double powers = 0, last = 1, half = 0;
-  Index j = 0;
-  if (exponents.first == 2) {
-    const double y = flat * inverse;
-    sum[j++] += factor * 0.5 * (y > 0.5 ? -log(x) / y : y > 0 ? -log1p(-y) / y : 1);
-    powers = 1;
-    last = x;
-  } else {
-    half = 1 / (1 + std::sqrt(x));
-  }
-  for (; j < exponents.count; ++j, last *= x) {
-    sum[j] += factor * (powers + last * half);
-    powers += last;
-  }
+  if (exponents.first == 3) return add_terms_from_foot(x, factor, 1, sums);
+  const double y = flat * inverse;
+  sums[0] += factor * 0.5 * (y > 0.5 ? -log(x) / y : y > 0 ? -log1p(-y) / y : 1);
+  add_terms_from_foot(x, factor, 2, sums.subspan(1));
 }
 
 void add_from_border(double flat, double h2, double weight, double nearest2, const Exponents& exponents,
-                     ByExponent& sum) {
-  const double inverse = 1 / (flat + h2);
-  double power = weight / flat;
-  Index j = 0;
-  if (exponents.first == 2) {
-    sum[j++] -= 0.5 * power * log(nearest2 * inverse);
-    power *= inverse;
-  } else {
-    power *= std::sqrt(inverse);
-  }
-  for (; j < exponents.count; ++j, power *= inverse) sum[j] -= power;
+                     std::span<double> sums) {
+  const double inverse = 1 / (flat + h2), factor = weight / flat;
+  if (exponents.first == 3) return add_terms_of_border(inverse, factor, 1, sums);
+  sums[0] -= 0.5 * factor * log(nearest2 * inverse);
+  add_terms_of_border(inverse, factor, 2, sums.subspan(1));
 }
 
 // The integrals along one side.
@@ -90,10 +76,11 @@ Line line_of(const Plate& plate, const Side& side, const Exponents& exponents) {
   const int n = exponents.n;
   const double h2 = plate.height * plate.height, e2 = side.inside * side.inside;
   const double nearest2 = plate.beside * plate.beside + h2;
+  const auto plane = std::span(line.plane).first(exponents.count);
   plate.for_each_node_of(side, n, [&](double t, double weight) {
     const double flat = t * t + e2, inverse = 1 / (flat + h2), tau = side.radius_at(t);
-    if (plate.counts_from_foot()) add_from_foot(flat, h2, weight * side.inside, exponents, line.plane);
-    else if (side.inside != 0) add_from_border(flat, h2, weight * side.inside, nearest2, exponents, line.plane);
+    if (plate.counts_from_foot()) add_from_foot(flat, h2, weight * side.inside, exponents, plane);
+    else if (side.inside != 0) add_from_border(flat, h2, weight * side.inside, nearest2, exponents, plane);
     double power = exponents.first == 2 ? weight : weight * std::sqrt(inverse);
     for (Index j = 0; j < exponents.count; ++j, power *= inverse) {
       double term = power;

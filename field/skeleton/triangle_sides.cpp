@@ -6,6 +6,7 @@
 #include "field/kernel/inverse_family.h"
 #include "field/kernel/segment_moments.h"
 #include "field/math/elementary.h"
+#include "field/skeleton/border_terms.h"
 #include "field/skeleton/plate.h"
 #include "field/skeleton/tapered_plate.h"
 #include "field/skeleton/triangle_methods.h"
@@ -18,21 +19,11 @@ using Side = Plate::Side;
 // I(m), I(m+2), I(m+4), where I(m) is the integral of d^-m over the plate.
 using PlateIntegrals = std::array<double, 3>;
 
-// In polar coordinates about the foot the integral over the distance from it is (h^-q - d^-q) / q, q = m - 2 and d
-// taken on the border, so that I(m) = 1/q sum over sides of e int (h^-q - d^-q) / (t^2 + e^2) dt, with e for `inside`.
-// The fraction is h^-q d^-2 (1 - x^(q/2)) / (1 - x), x = h^2 / d^2: a sum of powers of x, all positive.
 void add_from_foot(const Plate& plate, const Side& side, int q, PlateIntegrals& sum) {
   const double h2 = plate.height * plate.height, flat = side.inside * side.inside + h2;
   plate.for_each_node_of(side, 0, [&](double t, double weight) {
-    const double inverse = 1 / (t * t + flat), x = h2 * inverse, factor = side.inside * weight * inverse;
-    double powers = 0, last = 1;
-    for (int k = 0; k < q / 2; ++k, last *= x) powers += last;
-    const double half = q % 2 == 0 ? 0 : 1 / (1 + std::sqrt(x));
-    for (double& s : sum) {
-      s += factor * (powers + last * half);
-      powers += last;
-      last *= x;
-    }
+    const double inverse = 1 / (t * t + flat);
+    add_terms_from_foot(h2 * inverse, side.inside * weight * inverse, q, sum);
   });
 }
 
@@ -40,12 +31,8 @@ void add_from_border(const Plate& plate, const Side& side, int q, PlateIntegrals
   if (side.inside == 0) return;
   const double e2 = side.inside * side.inside, h2 = plate.height * plate.height;
   plate.for_each_node_of(side, 0, [&](double t, double weight) {
-    const double flat = t * t + e2, inverse = 1 / (flat + h2);
-    double power = half_power(inverse, q) * (side.inside * weight / flat);
-    for (double& s : sum) {
-      s -= power;
-      power *= inverse;
-    }
+    const double flat = t * t + e2;
+    add_terms_of_border(1 / (flat + h2), side.inside * weight / flat, q, sum);
   });
 }
 
