@@ -94,6 +94,25 @@ double jacobian_difference(const SkeletonSample& a, const SkeletonSample& b) {
   return off / size;
 }
 
+// Largest differences of samples that should be the same.
+struct Comparison {
+  int count = 0;
+  double worst = 0, worst_jacobian = 0;
+
+  void add(const SkeletonSample& a, const SkeletonSample& b) {
+    worst = std::max(worst, difference(a, b));
+    worst_jacobian = std::max(worst_jacobian, jacobian_difference(a, b));
+    ++count;
+  }
+};
+void expect_same(const Comparison& compared, int more_than, double tolerance) {
+  std::cout << "  worst relative difference of " << compared.count << ": " << compared.worst << ", of Jacobians "
+            << compared.worst_jacobian << '\n';
+  EXPECT_GT(compared.count, more_than);
+  EXPECT_LE(compared.worst, tolerance);
+  EXPECT_LE(compared.worst_jacobian, tolerance);
+}
+
 // Above a triangle, of one radius or not, and beside it in and near its plane, from a thousandth of its size away.
 struct NearPlace {
   TriangleSkeleton triangle;
@@ -115,29 +134,20 @@ NearPlace place_near_triangle(Random& random, int i) {
 // Lines lose more digits than sides where a triangle is many radii wide.
 TEST(Triangle, IsTheSameBySidesAndByLines) {
   Random random(83);
-  double worst = 0, worst_jacobian = 0;
-  int compared = 0;
+  Comparison compared;
   for (int i = 0; i < 3000; ++i) {
     const auto [t, p] = place_near_triangle(random, i);
     const int n = random.whole(min_kernel_degree, max_kernel_degree);
     const auto sides = triangle_by_sides<second>(t, p, n);
     if (!sides || sides->value > 1e4) continue;
-    const SkeletonSample lines = triangle_by_lines<second>(t, p, n);
-    worst = std::max(worst, difference(*sides, lines));
-    worst_jacobian = std::max(worst_jacobian, jacobian_difference(*sides, lines));
-    ++compared;
+    compared.add(*sides, triangle_by_lines<second>(t, p, n));
   }
-  std::cout << "  worst relative difference of " << compared << ": " << worst << ", of Jacobians " << worst_jacobian
-            << '\n';
-  EXPECT_GT(compared, 2000);
-  EXPECT_LE(worst, 1e-9);
-  EXPECT_LE(worst_jacobian, 1e-9);
+  expect_same(compared, 2000, 1e-9);
 }
 
 TEST(Triangle, SidesKeepTheirDigitsWhereTheTriangleIsCut) {
   Random random(84);
-  double worst = 0, worst_jacobian = 0;
-  int cut = 0;
+  Comparison compared;
   for (int i = 0; i < 3000; ++i) {
     const auto [t, p] = place_near_triangle(random, i);
     const auto& [a, b, c] = t.vertices;
@@ -150,14 +160,9 @@ TEST(Triangle, SidesKeepTheirDigitsWhereTheTriangleIsCut) {
     if (!whole || !left || !right || whole->value > 1e4) continue;
     SkeletonSample parts = *left;
     parts += *right;
-    worst = std::max(worst, difference(*whole, parts));
-    worst_jacobian = std::max(worst_jacobian, jacobian_difference(*whole, parts));
-    ++cut;
+    compared.add(*whole, parts);
   }
-  std::cout << "  worst relative difference of " << cut << ": " << worst << ", of Jacobians " << worst_jacobian << '\n';
-  EXPECT_GT(cut, 1000);
-  EXPECT_LE(worst, 1e-10);
-  EXPECT_LE(worst_jacobian, 1e-10);
+  expect_same(compared, 1000, 1e-10);
 }
 
 TEST(Triangle, WithoutAreaHasNoField) {
