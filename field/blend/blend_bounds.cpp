@@ -41,6 +41,7 @@ Interval slope_along(const SumBounds& sum, const PartialBounds& by, const Vec3<I
   Interval G_slope, alpha_slope;
   for (std::size_t i = 0; i < 3; ++i) {
     G_slope += clamped(S[i] / G, {-1, 1}) * sum.S_along(i);
+    if (alpha_gradient[i] == Interval(0)) continue;  // stays 0, as dC/dalpha may not be known
     alpha_slope += alpha_gradient[i] * Interval(sum.stretch()->direction[i]);
   }
   return by.df * sum.f_along() + by.dG * G_slope + by.dalpha * alpha_slope;
@@ -65,7 +66,7 @@ BlendBounds blend_bounds(const BlendField& blend, const SumBounds& sum, const An
   const Vec3<Interval> S = sum.S();
   const Interval G = sqrt(square(S.x) + square(S.y) + square(S.z));
   BlendBounds b{.value = corrected(blend, alpha, f, G), .gradient = unknown};
-  if (alpha.lo < 0 || !sum.has_slopes()) return b;
+  if (!sum.has_slopes()) return b;
   const Correction least({blend.kernel, blend.degree, blend.kernel_shape}, alpha.lo, blend.cavity, blend.projection);
   const PartialBounds by = partial_bounds(blend, least, alpha, b.value, f, G);
   if (sum.stretch() != nullptr) b.along = slope_along(sum, by, S, G, angle.gradient);

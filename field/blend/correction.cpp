@@ -126,7 +126,7 @@ Correction::CriticalPoint Correction::critical_point(double a) const {
     // alpha < 0 and M_d is nowhere so steep: its steepest point serves, z at the minimum of the cubic's outer arm
     const double eta = 1 / (k / 3 + half_width);
     const double by_k = -eta * eta * (1.0 / 3 + k / (9 * half_width));
-    return {eta, -eta * eta * (tangent / 3 + k * tangent / (9 * half_width)), by_k * a / (cos_ * cos_)};
+    return {eta, -eta * eta * (tangent / 3 + k * tangent / (9 * half_width)), by_k * a / (cos_ * cos_), true};
   }
   double z = k / 3 + 2 * half_width * (w <= 1 ? cos(acos(w) / 3) : cosh(acosh(w) / 3));
   if (alpha_ >= 0) z -= cubic(z, k, n) / cubic_slope(z, k, n);

@@ -32,6 +32,16 @@ class Correction {
   using Partials = CorrectionPartials;
   Partials partials(double f, double G) const;
 
+  /// The critical point D of the curve M_d of two equal skeletons 2 a apart, seen from a.   [field-maths 5]
+  struct CriticalPoint {
+    double eta;        ///< height / a
+    double eta_slope;  ///< d eta / da
+    double eta_by_alpha;
+    bool is_steepest = false;  ///< alpha < 0 and M_d is nowhere so steep: its steepest point instead
+  };
+  /// Of the inverse kernel; a > 0.
+  CriticalPoint critical_point(double a) const;
+
   /// Whether the cavity branch is taken at (f, G).
   bool in_cavity_branch(double f, double G) const;
 
@@ -46,12 +56,6 @@ class Correction {
   const std::optional<BoundedCorrection>& bounded() const { return bounded_; }
 
  private:
-  /// The critical point D of the curve M_d of two equal skeletons 2 a apart, seen from a.   [field-maths 5]
-  struct CriticalPoint {
-    double eta;        ///< height / a
-    double eta_slope;  ///< d eta / da
-    double eta_by_alpha;
-  };
   struct TwoSkeletons;
 
   // f and G inside (0, inf)
@@ -60,7 +64,6 @@ class Correction {
   double projected_exactly(double f, double G, double x_H) const;
   std::optional<double> trivial(double f) const;
   std::optional<TwoSkeletons> behind_critical_point(double f, double G) const;
-  CriticalPoint critical_point(double a) const;
 
   ReferenceCurve curve_;
   double alpha_;

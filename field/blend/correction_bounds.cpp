@@ -4,25 +4,15 @@
 #include <cmath>
 
 #include "field/blend/bounded_partials.h"
+#include "field/blend/chord_bounds.h"
+#include "field/blend/partials_below_zero.h"
 #include "field/blend/projection_angles.h"
-#include "field/kernel/inverse_family.h"
 #include "field/math/box3.h"
 
 namespace marrow {
 namespace {
 
 constexpr double inf = Box3::inf;
-
-// Slope of the chord of the convex curve g between two of its points; isotone in both.
-Interval chord_slope(const ReferenceCurve& curve, const Interval& a, const Interval& b) {
-  const auto slope = [&](double x, double y) {
-    if (std::fabs(x - y) < 1e-4 * std::max(x, y)) return curve.slope(0.5 * (x + y));
-    return (curve.at(x) - curve.at(y)) / (x - y);
-  };
-  // Near the diagonal the slope in the middle is off by (1e-4)^2 / 24 g'''/g' < 1e-8, farther the difference loses
-  // 1e-11.
-  return {slope(a.lo, b.lo) * (1 - 1e-8), slope(a.hi, b.hi) * (1 + 1e-8)};
-}
 
 // C is isotone and its clamp makes it no steeper than the curve: dC/df <= 1, dC/dG <= 1/g'(C).   [tracing 3.3]
 PartialBounds coarse_partials(const ReferenceCurve& curve, const Interval& value) {
@@ -70,31 +60,31 @@ PartialBounds partial_bounds(const BlendField& blend, const Correction& c, const
                              const Interval& f, const Interval& G) {
   if (c.is_sum()) return {{1, 1}, {0, 0}, {0, 0}};
   if (c.bounded()) return bounded_partials(c, alpha, value, f, G);
+  if (c.alpha() < 0) return partials_below_zero(c, value, f, G);
   const ReferenceCurve curve(blend.degree);
   if (!(f.lo > 0 && G.lo > 0) || may_be_behind_critical_point(c, f, G))
     return c.cavity() ? coarse_partials(curve, value) : PartialBounds{Interval::everything(), Interval::everything()};
   const Angles angle = angles_of(alpha);
   if (c.projection() == Projection::Exact) return exact_partials(curve, angle, value, f, G);
-  const Interval x_H{curve.inverse(G.lo) * (1 - 1e-12), curve.inverse(G.hi) * (1 + 1e-12)};
-  return chord_partials(curve, angle, f, x_H);
+  return chord_partials(curve, angle, f, x_H_of(curve, G));
 }
 
 // For alpha >= 0 C is isotone in both.   [tracing 3.3]
-// Below 0, where the guard cannot act, it is isotone in G; along f its largest value is at an end, its least at an end
-// or on the crest of the curves M_d. Where the guard may act, C lies between 0 and 2 x_H.   [tracing 3.3;
-// field-maths 4.4]
+// Below 0, guarded or not, it is isotone in G. Along f the projection falls; behind the critical point C falls with a,
+// which along f is largest on the crest of the curves M_d: so C is largest at an end, or as f goes to 0, and least at
+// an end or on the crest.   [tracing 3.3; partials_below_zero.h]
 Interval correction_bounds(const Correction& c, const Interval& f, const Interval& G) {
   if (c.alpha() >= 0) return {c.value(f.lo, G.lo) * (1 - 1e-12), c.value(f.hi, G.hi) * (1 + 1e-12)};
   const int n = c.degree();
-  const ReferenceCurve curve(n);
-  const double x_least = curve.inverse(G.lo), tangent = -tan(c.alpha());
-  const bool may_be_guarded = chord_slope(curve, Interval(f.lo), Interval(x_least)).lo < 2 * tangent * (1 + 1e-9);
-  if (may_be_guarded || !(f.lo > 0)) return {0, 2 * curve.inverse(G.hi) * (1 + 1e-12)};
+  const auto bounds = [](double least, double most) {
+    constexpr double lost = 1e-15;  // of C, where powers of distances cancel (f < 1e-12)
+    return Interval{std::max(0.0, least * (1 - 1e-9) - lost), most * (1 + 1e-9) + lost};
+  };
+  if (!(f.lo > 0)) return bounds(0, std::max(c.value(f.hi, G.hi), 2 * ReferenceCurve(n).inverse(G.hi)));
   const double crest_r = pow(2 * (n - 1) / (std::sqrt(n + 1.0) * G.lo), 1.0 / n);
   const double crest = std::clamp(2 / integer_power(crest_r, n - 1), f.lo, f.hi);
-  const double least = std::min({c.value(f.lo, G.lo), c.value(f.hi, G.lo), c.value(crest, G.lo)});
-  const double most = std::max(c.value(f.lo, G.hi), c.value(f.hi, G.hi));
-  return {least * (1 - 1e-9), most * (1 + 1e-9)};
+  return bounds(std::min({c.value(f.lo, G.lo), c.value(f.hi, G.lo), c.value(crest, G.lo)}),
+                std::max(c.value(f.lo, G.hi), c.value(f.hi, G.hi)));
 }
 
 // In the cavity branch what is projected moves with the angle while the projection turns, and C may fall, then rise.

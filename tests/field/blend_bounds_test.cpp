@@ -128,7 +128,7 @@ TEST(BlendBounds, HoldAlongStretches) {
   int bounded = 0, sloped = 0;
   for (int i = 0; i < 4000; ++i) {
     BlendField blend = i % 2 == 0 ? random_blend(random) : blend_of_finite_height(random);
-    if (blend.alpha < 0 || !blend.cavity) continue;
+    if (!blend.cavity) continue;
     if (i % 4 == 1)
       for (SegmentSkeleton& s : blend.segments.skeletons) s.radius_to = s.radius_from;
     Vec3d middle = random.vector(2);

@@ -77,7 +77,7 @@ std::uint32_t some_body(BodyDraft& d, Random& random) {
     case 2:
       return d.leaf(random_node<Torus>(0, random));
     case 3: {
-      const Setting setting{.degree = random.whole(3, 6), .alpha = random.between(0, 1.5)};
+      const Setting setting{.degree = random.whole(3, 6), .alpha = random.between(-1, 1.5)};
       return d.leaf(BlendLeaf{std::make_shared<const BlendField>(random_scene(random, setting, 2))});
     }
     default:

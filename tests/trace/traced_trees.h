@@ -48,8 +48,9 @@ inline Primitive tube(Random& random) {
 inline FieldNodeId tubes(FieldDescription& field, Random& random) {
   Blend blend;
   for (int i = random.whole(1, 3); i > 0; --i) blend.of.push_back(field.add({.what = tube(random), .where = {}}));
-  if (random.between(0, 1) < 0.3) blend.alpha = random.between(0, 1.5);
-  if (random.between(0, 1) < 0.3) blend.projection = Projection::Exact;
+  double angle = 0;
+  if (random.between(0, 1) < 0.4) blend.alpha = angle = random.between(-1, 1.5);
+  if (random.between(0, 1) < 0.3 && angle >= 0) blend.projection = Projection::Exact;
   return field.add({.what = std::move(blend), .where = {}});
 }
 

@@ -2,6 +2,8 @@
 #include "field/trace/general/tree_tracer.h"
 
 #include <cstddef>
+#include <cstdint>
+#include <iostream>
 #include <optional>
 #include <utility>
 
@@ -49,6 +51,45 @@ TEST(TreeTracer, NeverComesAfterWhatSamplingFindsAndAlwaysLiesOnTheSurface) {
   }
   EXPECT_GT(hits, 100);
   EXPECT_LE(undecided, 5);
+}
+
+// Below 0 the corrected field falls where the sum rises, is guarded far away, and has kinks at both.
+FieldTree ball_and_negative_blend(Random& random) {
+  FieldDescription field;
+  Blend blend;
+  for (int i = 0; i < 2; ++i) blend.of.push_back(field.add({.what = tube(random), .where = {}}));
+  blend.alpha = random.between(-1, 0);
+  blend.cavity = random.between(0, 1) < 0.7;
+  const FieldNodeId tubes = field.add({.what = std::move(blend), .where = {}}), beside = ball(field, random);
+  return tree_above(field, add(field, Sum{}, {tubes, beside}));
+}
+
+TEST(TreeTracer, DecidesBlendsOfNegativeAngles) {
+  Random random(48);
+  int hits = 0, undecided = 0, missed = 0;
+  std::uint32_t evaluations = 0;
+  constexpr int scenes = 15, rays = 40;
+  for (int scene = 0; scene < scenes; ++scene) {
+    const FieldTree tree = ball_and_negative_blend(random);
+    const auto tracer = TreeTracer::make(tree);
+    ASSERT_TRUE(tracer) << tracer.why()[0].message;
+    for (int r = 0; r < rays; ++r) {
+      const Vec3d from = normalize(random.vector(1)) * 8.0;
+      const Ray ray{.origin = from, .direction = normalize(random.vector(1.2) - from)};
+      const CrossingSearch found = traced(*tracer, ray);
+      const auto expected = sampled(tree, ray, 16);
+      missed += expected && !(found.t && *found.t <= expected->hi + 1e-9);
+      hits += found.t.has_value();
+      undecided += found.undecided < Box3::inf;
+      evaluations += found.evaluations;
+    }
+  }
+  std::cout << "  " << hits << " hits, " << missed << " missed, " << undecided << " undecided, "
+            << evaluations / (scenes * rays) << " evaluations a ray\n";
+  EXPECT_GT(hits, 100);
+  EXPECT_EQ(missed, 0);
+  EXPECT_LE(undecided, 1);
+  EXPECT_LT(evaluations, 200u * scenes * rays);
 }
 
 // A bend cuts space behind the centre of its circle: rays across the cut are decided all the same.
@@ -158,7 +199,7 @@ TEST(TreeTracer, StartsBesideAPlaneThatTheRayRunsIn) {
 TEST(TreeTracer, SpawnedPointsLieOutside) {
   Random random(43);
   int hits = 0;
-  for (int scene = 0; scene < 20; ++scene) {
+  for (int scene = 0; scene < 40; ++scene) {
     const FieldTree tree = random_tree(random);
     const auto tracer = TreeTracer::make(tree);
     ASSERT_TRUE(tracer);
