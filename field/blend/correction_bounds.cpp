@@ -60,6 +60,7 @@ PartialBounds partial_bounds(const BlendField& blend, const Correction& c, const
                              const Interval& f, const Interval& G) {
   if (c.is_sum()) return {{1, 1}, {0, 0}, {0, 0}};
   if (c.bounded()) return bounded_partials(c, alpha, value, f, G);
+  if (c.alpha() < 0 && alpha.lo < alpha.hi) return {Interval::everything(), Interval::everything()};
   if (c.alpha() < 0) return partials_below_zero(c, value, f, G);
   const ReferenceCurve curve(blend.degree);
   if (!(f.lo > 0 && G.lo > 0) || may_be_behind_critical_point(c, f, G))

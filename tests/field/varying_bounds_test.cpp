@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <memory>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -24,11 +25,18 @@ void add_skeletons(BlendField& blend, Random& random) {
   }
 }
 
+// Some below 0, where the projection onto the curve itself is not defined.
+double random_angle(const BlendField& blend, Random& random) {
+  const double angle = random.between(0, 1.5);
+  return blend.projection == Projection::Paper && random.between(0, 1) < 0.2 ? angle / 1.5 - 1 : angle;
+}
+
 void add_angles(BlendField& blend, Random& random) {
-  for (std::size_t i = 0; i < blend.points.size(); ++i) blend.points.alphas.push_back(random.between(0, 1.5));
+  const auto add = [&](std::vector<double>& angles) { angles.push_back(random_angle(blend, random)); };
+  for (std::size_t i = 0; i < blend.points.size(); ++i) add(blend.points.alphas);
   for (std::size_t i = 0; i < blend.segments.size(); ++i) {
-    blend.segments.alphas.push_back(random.between(0, 1.5));
-    blend.segments.alphas_to.push_back(random.between(0, 1.5));
+    add(blend.segments.alphas);
+    add(blend.segments.alphas_to);
   }
 }
 
@@ -39,7 +47,7 @@ void add_strands(BlendField& blend, Random& random) {
   for (std::size_t i = 0; i < blend.points.size(); ++i) blend.points.strands.push_back(next++);
   for (std::size_t i = 0; i < blend.segments.size(); ++i) blend.segments.strands.push_back(one ? next : next++);
   for (std::uint32_t i = 0; i <= next; ++i)
-    blend.direction_bounds.push_back({random.between(0, 1), random.between(0, 1.5)});
+    blend.direction_bounds.push_back({random_angle(blend, random), random_angle(blend, random)});
 }
 
 class Ramp final : public AlphaSource {
