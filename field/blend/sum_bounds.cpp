@@ -245,28 +245,7 @@ void SumBounds::add_inverse(const BlendField& blend) {
     add_integral(blend, s, distance_to(s, p), n + 1, [&] { return triangle_field<all>(s, p, n); });
   for (const auto& s : blend.arcs.skeletons)
     add_integral(blend, s, distance_to(s, p), n, [&] { return arc_field<all>(s, p, n); });
-  // R(H)^2 times a positive sum of |p - q|^-3, and H moves no faster than p: R changes by its slope times rho at most.
-  for (const auto& s : blend.cani_hornus_segments.skeletons) {
-    const SkeletonSample sample = cani_hornus_field<Derivatives::ScaleInvariant>(s, p);
-    const double f = sample.value, d = distance_to(s, p);
-    if (!(d > rho_) || !std::isfinite(f)) {
-      add({.f = {0, inf}, .S_by = inf, .log_slope = inf});
-      continue;
-    }
-    const double slope = std::fabs(s.radius_to - s.radius_from) / length(s.to - s.from), q = rho_ / d;
-    const double wider = std::min(1 + slope * rho_ / least_radius(s), largest_radius(s) / least_radius(s)) * (1 + 1e-9);
-    const double high = f * wider * wider / integer_power(1 - q, 3);
-    // S = R^3 grad I, and |grad^2 I| <= 12 I / d^2
-    const double R = largest_radius(s), grown = wider * wider * wider;
-    const double by = (grown - 1) * length(sample.si_gradient) +
-                      12 * R * grown * f * rho_ / (integer_power(1 - q, 5) * d * d) + sample_error * R * f / d;
-    const double longest = 3 * R * high / (d - rho_);
-    const bool is_near = !(by < longest);
-    add({.f = {f / (wider * wider * integer_power(1 + q, 3)), high},
-         .S = is_near ? Vec3d{} : sample.si_gradient,
-         .S_by = std::min(longest, by) * (1 + 1e-9),
-         .log_slope = (3 / (d - rho_) + 2 * slope / least_radius(s)) * (1 + 1e-9)});
-  }
+  add_cani_hornus(blend);
 }
 
 // (1 + s^2 d^2 / tau^2)^(-m/2) is an inverse power of the distance in four dimensions, tau / s being the fourth.

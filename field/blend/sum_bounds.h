@@ -82,6 +82,7 @@ class SumBounds {
   template <class Skeleton, class Sample>
   void add_integral(const BlendField&, const Skeleton&, double distance, int m, const Sample&);
   void add_inverse(const BlendField&);
+  void add_cani_hornus(const BlendField&);
   void add_cauchy(const BlendField&);
   void add_compact(const BlendField&);
   void add_distances(const BlendField&);

@@ -1,6 +1,7 @@
 // Bounds over boxes against the field at points in them.
 #include "field/blend/blend_bounds.h"
 
+#include <iostream>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -108,6 +109,51 @@ TEST(BlendBounds, HoldForKernelsOfFiniteHeight) {
     }
   }
   EXPECT_GT(sloped, 5000);
+}
+
+// Their radius is that at the foot of the place, which stays at the ends beyond them: slopes jump there.
+BlendField blend_of_cani_hornus(Random& random) {
+  BlendField blend;
+  blend.degree = 3;
+  blend.alpha = random.between(0, 1) < 0.5 ? std::numbers::pi / 2 : random.between(-0.9, 1.5);
+  for (int i = random.whole(1, 3); i > 0; --i) blend.cani_hornus_segments.add(random.segment(), {});
+  return blend;
+}
+
+TEST(BlendBounds, HoldForSegmentsOfCaniAndHornus) {
+  Random random(58);
+  int sloped = 0, narrow = 0, small = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const BlendField blend = blend_of_cani_hornus(random);
+    const double half = pow(10, random.between(-7, -0.2));
+    const SegmentSkeleton& s = blend.cani_hornus_segments.skeletons[0];
+    const Vec3d end = (i % 4 == 0 ? s.from : s.to), away = cross(s.to - s.from, random.vector(1));
+    const Vec3d center = i % 2 == 0 ? end + away * random.between(0.1, 1) + random.vector(half) : random.vector(2);
+    const BlendBounds bounds = blend_bounds(blend, Box3{center, center}.padded(half));
+    for (int k = 0; k < 8; ++k) {
+      const BlendSample b = evaluate(blend, center + random.vector(half));
+      if (b.sum > 1e50) continue;
+      ASSERT_TRUE(bounds.value.contains(b.corrected))
+          << "case " << i << ": " << b.corrected << " not in [" << bounds.value.lo << ", " << bounds.value.hi << "]";
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Interval& g = bounds.gradient[axis];
+        const double slack = 1e-9 * (1 + length(b.corrected_gradient));
+        ASSERT_TRUE(g.lo - slack <= b.corrected_gradient[axis] && b.corrected_gradient[axis] <= g.hi + slack)
+            << "case " << i << " axis " << axis << ": " << b.corrected_gradient[axis] << " not in [" << g.lo << ", "
+            << g.hi << "]";
+        sloped += g.hi - g.lo < 1e300;
+      }
+    }
+    // between its ends nothing jumps
+    const BlendSample at = evaluate(blend, center);
+    if (i % 2 == 0 || half > 1e-6 || !(at.corrected > 0.1 && at.corrected < 2)) continue;
+    ++small;
+    narrow += bounds.gradient.x.width() < 1e-2 * (1 + length(at.corrected_gradient));
+  }
+  std::cout << "  " << sloped << " slopes bounded, " << narrow << " of " << small << " small boxes narrow\n";
+  EXPECT_GT(sloped, 40'000);
+  EXPECT_GT(small, 20);
+  EXPECT_GT(narrow, 0.9 * small);
 }
 
 // Half of them along a segment of the blend, where the compact kernel knows what changes.
