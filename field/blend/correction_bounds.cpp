@@ -60,8 +60,12 @@ PartialBounds partial_bounds(const BlendField& blend, const Correction& c, const
                              const Interval& f, const Interval& G) {
   if (c.is_sum()) return {{1, 1}, {0, 0}, {0, 0}};
   if (c.bounded()) return bounded_partials(c, alpha, value, f, G);
-  if (c.alpha() < 0 && alpha.lo < alpha.hi) return {Interval::everything(), Interval::everything()};
-  if (c.alpha() < 0) return partials_below_zero(c, value, f, G);
+  if (alpha.lo < 0) {
+    const PartialBounds below = partials_below_zero(c, {alpha.lo, std::min(alpha.hi, 0.0)}, value, f, G);
+    if (!(alpha.hi > 0)) return below;
+    return hull(below, partial_bounds(blend, Correction(c.degree(), 0, c.cavity(), c.projection()), {0, alpha.hi},
+                                      value, f, G));
+  }
   const ReferenceCurve curve(blend.degree);
   if (!(f.lo > 0 && G.lo > 0) || may_be_behind_critical_point(c, f, G))
     return c.cavity() ? coarse_partials(curve, value) : PartialBounds{Interval::everything(), Interval::everything()};

@@ -16,8 +16,11 @@ struct PartialBounds {
   Interval df, dG;
   Interval dalpha = Interval::everything();
 };
-/// dC/df, dC/dG and dC/dalpha there, for all angles of `alpha`, whose least is that of the correction, one only if it
-/// is below 0; `value` is what correction_bounds() gave. Everything where no bound is known.
+inline PartialBounds hull(const PartialBounds& a, const PartialBounds& b) {
+  return {hull(a.df, b.df), hull(a.dG, b.dG), hull(a.dalpha, b.dalpha)};
+}
+/// dC/df, dC/dG and dC/dalpha there, for all angles of `alpha`, whose least is that of the correction; `value` is what
+/// correction_bounds() gave. Everything where no bound is known.
 PartialBounds partial_bounds(const BlendField&, const Correction&, const Interval& alpha, const Interval& value,
                              const Interval& f, const Interval& G);
 

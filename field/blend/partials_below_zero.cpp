@@ -16,20 +16,23 @@ const PartialBounds unknown{Interval::everything(), Interval::everything()};
 
 Interval padded(double low, double high) { return {low * (1 - relative_error), high * (1 + relative_error)}; }
 
-PartialBounds hull_of(const PartialBounds& a, const PartialBounds& b) { return {hull(a.df, b.df), hull(a.dG, b.dG)}; }
+// tan |alpha| of angles from -1 to 0.
+Interval steepness_of(const Interval& alpha) {
+  return {std::max(0.0, rounding::down(-tan(alpha.hi), 2)), rounding::up(-tan(alpha.lo), 2)};
+}
 
-// Of the projection onto the chord, in front of the critical point.
-PartialBounds of_projection(const Correction& correction, const ReferenceCurve& curve, const Interval& f,
-                            const Interval& G) {
-  const double t = -sin(correction.alpha()), c = cos(correction.alpha());
-  const Interval x_H = x_H_of(curve, G), slope_at_H = slope_of(curve, x_H), w = c * chord_slope(curve, f, x_H);
-  const PartialBounds guarded{-1, Interval(2) / slope_at_H};
-  if (w.hi < 2 * t) return guarded;
-  const Interval free{std::max(w.lo, rounding::down(2 * t, 2)), w.hi}, den = square(free - Interval(t));
-  const Interval df = -t * (2 * free - Interval(t) - c * slope_of(curve, f)) / den;
-  const Interval dG = (square(free) / slope_at_H - Interval(c * t)) / den;
-  const PartialBounds not_guarded{{std::min(0.0, df.lo), std::min(0.0, df.hi)}, {std::max(0.0, dG.lo), dG.hi}};
-  return w.lo > 2 * t ? not_guarded : hull_of(guarded, not_guarded);
+// Of the projection onto the chord, in front of the critical point, k = tan |alpha|.
+PartialBounds of_projection(const ReferenceCurve& curve, const Interval& k, const Interval& f, const Interval& G) {
+  const Interval x_H = x_H_of(curve, G), slope_at_H = slope_of(curve, x_H), all = chord_slope(curve, f, x_H);
+  const PartialBounds guarded{-1, Interval(2) / slope_at_H, 0};
+  if (all.hi < 2 * k.lo) return guarded;
+  // s - k is k, and s / 2, at least
+  const Interval s{std::max(all.lo, 2 * k.lo), all.hi};
+  const Interval less = s - k, den = square(Interval(std::max({less.lo, 0.5 * s.lo, k.lo}), less.hi));
+  const Interval df = -k * (2 * s - k - slope_of(curve, f)) / den, dG = (square(s) / slope_at_H - k) / den;
+  const Interval dalpha = s * (f - x_H) * (Interval(1) + square(k)) / den;
+  const PartialBounds free{{std::min(0.0, df.lo), std::min(0.0, df.hi)}, {std::max(0.0, dG.lo), dG.hi}, dalpha};
+  return all.lo > 2 * k.hi ? free : hull(guarded, free);
 }
 
 // The critical points D of the curves M_d of an interval of a: eta rises with a, also where M_d is nowhere so steep.
@@ -62,7 +65,7 @@ Interval slope_along_a(const Correction& correction, const ReferenceCurve& curve
   const Interval r_share = Interval(1) / a + square(a) * eta * eta_slope / square(r_D);  // d ln r_D / da
   const Interval D_f_slope = -(n - 1.0) * D_f * r_share;
   const Interval D_G_slope = D_G * (Interval(1) / a + eta_slope / eta - (n + 1.0) * r_share);
-  const PartialBounds at_D = of_projection(correction, curve, D_f, D_G);
+  const PartialBounds at_D = of_projection(curve, steepness_of(correction.alpha()), D_f, D_G);
   const Interval slope = at_D.df * D_f_slope + at_D.dG * D_G_slope;
   return {std::min(0.0, slope.lo), std::min(0.0, slope.hi)};
 }
@@ -70,30 +73,31 @@ Interval slope_along_a(const Correction& correction, const ReferenceCurve& curve
 }  // namespace
 
 // A is at r = (2/f)^(1/(n-1)) from two skeletons 2 a apart, a^2 = r^2 (1 - c^2), c = G r^n / (2 (n-1)), and behind D
-// where eta = c / sqrt(1 - c^2) is less than that of D.
-PartialBounds partials_below_zero(const Correction& correction, const Interval& value, const Interval& f,
-                                  const Interval& G) {
+// where eta = c / sqrt(1 - c^2) is less than that of D, which is largest for the least angle.
+PartialBounds partials_below_zero(const Correction& least, const Interval& alpha, const Interval& value,
+                                  const Interval& f, const Interval& G) {
   if (!(f.lo > smallest_field && f.hi < largest_field && G.hi < largest_field)) return unknown;
-  const int n = correction.degree();
+  const int n = least.degree();
   const ReferenceCurve curve(n);
-  const auto with_cut = [&](const PartialBounds& b) { return value.lo > 0 ? b : hull_of(b, {0, 0}); };
-  const auto in_front = [&] { return G.lo > 0 ? of_projection(correction, curve, f, G) : unknown; };
-  if (!correction.cavity()) return with_cut(in_front());
+  const auto with_cut = [&](const PartialBounds& b) { return value.lo > 0 ? b : hull(b, {0, 0, 0}); };
+  const auto in_front = [&] { return G.lo > 0 ? of_projection(curve, steepness_of(alpha), f, G) : unknown; };
+  if (!least.cavity()) return with_cut(in_front());
 
   const Interval r = padded(1 / curve.inverse_distance(f.hi / 2), 1 / curve.inverse_distance(f.lo / 2));
   const Interval c = G * integer_power(r, n) * (1.0 / (2 * (n - 1)));
-  const double highest = correction.critical_point(r.hi).eta * (1 + relative_error);
+  const double highest = least.critical_point(r.hi).eta * (1 + relative_error);
   const double most = highest / std::sqrt(1 + highest * highest);
   if (c.lo > most) return with_cut(in_front());
+  if (alpha.lo < alpha.hi) return unknown;
   const Interval behind{c.lo, std::min(c.hi, most)}, flatness = sqrt(Interval(1) - square(behind));
-  const auto points = critical_points(correction, r * flatness);
+  const auto points = critical_points(least, r * flatness);
   if (!points) return unknown;
-  const Interval along_a = slope_along_a(correction, curve, *points), a = points->a;
+  const Interval along_a = slope_along_a(least, curve, *points), a = points->a;
   const Interval a_by_f = square(r) * ((n + 1.0) * square(behind) - Interval(1)) / ((n - 1.0) * f * a);
   const Interval minus_a_by_G = integer_power(r, n + 2) * behind * (1.0 / (2 * (n - 1))) / a;
   const PartialBounds at_D{along_a * a_by_f, -along_a * minus_a_by_G};
   const bool is_behind = c.hi < 1 && (behind / flatness).hi < points->eta.lo;
-  return with_cut(is_behind ? at_D : hull_of(at_D, in_front()));
+  return with_cut(is_behind ? at_D : hull(at_D, in_front()));
 }
 
 }  // namespace marrow

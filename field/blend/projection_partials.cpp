@@ -37,10 +37,6 @@ Ratios ratios(const CurveBounds& curve, const Interval& s, const Interval& f, co
 
 }  // namespace
 
-PartialBounds hull(const PartialBounds& a, const PartialBounds& b) {
-  return {hull(a.df, b.df), hull(a.dG, b.dG), hull(a.dalpha, b.dalpha)};
-}
-
 ProjectionPartials::ProjectionPartials(const CurveBounds& curve, Projection projection, const Angles& angle)
     : curve_(curve), projection_(projection), angle_(angle) {}
 

@@ -24,6 +24,4 @@ class ProjectionPartials {
   Angles angle_;
 };
 
-PartialBounds hull(const PartialBounds&, const PartialBounds&);
-
 }  // namespace marrow

@@ -21,7 +21,7 @@ struct Setting {
   Correction correction;
   Interval f, G;
   Interval value() const { return correction_bounds(correction, f, G); }
-  PartialBounds partials() const { return partials_below_zero(correction, value(), f, G); }
+  PartialBounds partials() const { return partials_below_zero(correction, correction.alpha(), value(), f, G); }
 };
 
 // From far beyond the surface, where the guard acts, to deep inside; G also 0, and beside the curve.
