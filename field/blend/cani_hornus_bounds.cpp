@@ -12,7 +12,7 @@ namespace marrow {
 namespace {
 
 constexpr double inf = Box3::inf;
-constexpr double sample_error = 3e-11;  // relative, of the closed form   [field-maths 3.3]
+constexpr double sample_error = SumBounds::sample_error;
 
 // In a ball of `rho` around a place at `distance` > rho.
 class InBall {
@@ -36,7 +36,7 @@ class InBall {
 
   SumBounds::Between bounds() const {
     const Interval f = field();
-    const double longest = 3 * radii_.hi * f.hi / (distance_ - rho_), by = change(at_p_.si_gradient, 1, 3);
+    const double longest = 3 * radii_.hi * f.hi / (distance_ - rho_), by = S_change();
     const bool is_near = !(by < longest);
     return {.f = f,
             .S = is_near ? Vec3d{} : at_p_.si_gradient,
@@ -47,7 +47,7 @@ class InBall {
   // grad f = R^2 grad I + 2 f grad R / R, dS/dp = R^3 grad^2 I + 3 S grad R / R; beyond the ends R is constant.
   PrimitiveSlopes slopes() const {
     const Interval growth = radius_growth();
-    const double by = change(at_p_.gradient, 0, 2), S_by = change(at_p_.si_gradient, 1, 3), J_by = J_change();
+    const double by = change(at_p_.gradient, at_p_.value, 2), S_by = S_change(), J_by = J_change();
     const auto around = [](double x, double change) { return Interval(x) + Interval(-change, change); };
     PrimitiveSlopes b;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -72,12 +72,13 @@ class InBall {
     return foot_.lo > 0 && foot_.hi < 1 ? inside : hull(inside, 0);
   }
 
-  // Of R^k grad I, and |grad^2 I| <= 12 I / d^2; one power of R more than f has with S.
-  double change(const Vec3d& at_p, int more, int k) const {
-    const double grown = integer_power(wider_, k), f = at_p_.value * integer_power(radius_, more);
-    return (grown - 1) * length(at_p) + 12 * grown * f * rho_ / (integer_power(1 - q_, 5) * distance_ * distance_) +
-           3 * sample_error * f / distance_;
+  // Of R^k grad I, where R^k I is `size` at p, and |grad^2 I| <= 12 I / d^2.
+  double change(const Vec3d& at_p, double size, int k) const {
+    const double grown = integer_power(wider_, k);
+    return (grown - 1) * length(at_p) + 12 * grown * size * rho_ / (integer_power(1 - q_, 5) * distance_ * distance_) +
+           3 * sample_error * size / distance_;
   }
+  double S_change() const { return change(at_p_.si_gradient, at_p_.value * radius_, 3); }
 
   // Of R^3 grad^2 I, and |grad^3 I| <= 60 I / d^3.
   double J_change() const {

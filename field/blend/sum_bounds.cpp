@@ -13,8 +13,6 @@ namespace marrow {
 namespace {
 
 constexpr double inf = Box3::inf;
-// Relative error of the closed forms, with a margin of ten.   [field-maths 3.3: 1.2e-13; triangles 2.6e-12]
-constexpr double sample_error = 3e-11;
 
 Interval pad(double x, double by) { return {rounding::down(x - by), rounding::up(x + by)}; }
 

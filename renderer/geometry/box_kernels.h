@@ -39,7 +39,7 @@ struct BoxKernels {
   struct Bounds {
     double lower[3], upper[3];
     double middle[3];  ///< Embree's origin
-    double margin;     ///< that boxes are padded by
+    double margin;     ///< that Embree's boxes are padded by
   };
   struct Started {
     unsigned in_bounds;  ///< a bit for each ray that comes into the bounds; others get an empty interval

@@ -1,8 +1,8 @@
 // The parts of solids under one Embree hierarchy.
 //
 // Embree only finds candidate boxes, in float, with the origin in the middle of them all; roots are found and compared
-// in double. Boxes are padded by 8 * 2^-24 * M, M the largest coordinate of boxes and ray origins from there, and by
-// 2^-48 of the largest one in the scene, so that no rounding of the float traversal can lose a box, on any
+// in double. Its boxes are padded by 8 * 2^-24 * M, M the largest coordinate of boxes and ray origins from there, and
+// by 2^-48 of the largest one in the scene, so that no rounding of the float traversal can lose a box, on any
 // instruction set; ray origins are moved up to the boxes' bounds to keep M its own size.
 #pragma once
 
@@ -24,7 +24,7 @@ namespace marrow {
 struct PartsOfSolid {
   const Solid* solid = nullptr;
   ObjectId object;
-  std::pmr::vector<SolidPart> parts;  ///< in huge pages
+  std::pmr::vector<SolidPart> parts;  ///< in huge pages; of a hierarchy, padded for doubles (float_margin.h)
   Vec3d middle;                       ///< of all solids: Embree's origin
   double margin = 0;                  ///< by which Embree's boxes are padded beyond those of the parts
 
@@ -63,7 +63,7 @@ class PartHierarchy {
   bool traces_packets_ = false;
   Box3 padded_bounds_;  // what rays are clipped to
   Vec3d middle_;        // Embree's origin
-  double margin_ = 0;   // that boxes are padded by
+  double margin_ = 0;   // that Embree's boxes are padded by
   EmbreeScene scene_;
 };
 

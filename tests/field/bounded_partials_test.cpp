@@ -11,12 +11,17 @@
 #include <gtest/gtest.h>
 
 #include "field/blend/curve_bounds.h"
+#include "tests/field/partials_check.h"
 #include "tests/field/random.h"
 
 namespace marrow {
 namespace {
 
+using test::expect_holds;
+using test::expect_holds_difference;
 using test::Random;
+using test::text;
+using test::within;
 
 constexpr double half_pi = std::numbers::pi / 2;
 
@@ -66,22 +71,11 @@ Setting random_setting(Random& random, int i, double width) {
   return s;
 }
 
-double within(Random& random, const Interval& x, int k) {
-  return k == 0 ? x.lo : k == 1 ? x.hi : std::clamp(random.between(x.lo, x.hi), x.lo, x.hi);
-}
-
-void expect_holds(const Interval& bounds, double x, const char* name) {
-  const double slack = 1e-8 * std::fabs(x) + 1e-9;
-  EXPECT_TRUE(bounds.lo - slack <= x && x <= bounds.hi + slack)
-      << name << " " << x << " is not in " << bounds.lo << " .. " << bounds.hi;
-}
-
 std::string text(const Setting& s) {
-  const auto range = [](const Interval& x) { return std::to_string(x.lo) + " .. " + std::to_string(x.hi); };
   return (s.kernel.family == KernelFamily::Cauchy ? "Cauchy " : "compact ") + std::to_string(s.kernel.degree) +
          " shape " + std::to_string(s.kernel.shape) + (s.cavity ? " cavity" : "") +
-         (s.projection == Projection::Exact ? " exact" : " chord") + " alpha " + range(s.alpha) + " f " + range(s.f) +
-         " G " + range(s.G);
+         (s.projection == Projection::Exact ? " exact" : " chord") + " alpha " + text(s.alpha) + " f " + text(s.f) +
+         " G " + text(s.G);
 }
 
 TEST(BoundedPartials, HoldThePartialsOfEveryPlace) {
@@ -94,18 +88,14 @@ TEST(BoundedPartials, HoldThePartialsOfEveryPlace) {
     for (int k = 0; k < 4; ++k) {
       const double f = within(random, s.f, k), G = within(random, s.G, k);
       const Correction c = s.at(within(random, s.alpha, k));
-      const CorrectionPartials p = c.partials(f, G);
       if (c.is_trivial(f)) continue;
       behind += c.in_cavity_branch(f, G);
-      expect_holds(bounds.df, p.df, "df");
-      expect_holds(bounds.dG, p.dG, "dG");
-      expect_holds(bounds.dalpha, p.dalpha, "dalpha");
+      expect_holds(bounds, c.partials(f, G));
     }
   }
   EXPECT_GT(behind, 20'000);
 }
 
-// The mean value theorem: what slopes of rays are used for. Finds derivatives that are wrong in the operator too.
 TEST(BoundedPartials, HoldDifferencesOfValues) {
   Random random(20261123);
   for (int i = 0; i < 30'000 && !HasFailure(); ++i) {
@@ -115,13 +105,8 @@ TEST(BoundedPartials, HoldDifferencesOfValues) {
     const double f = within(random, s.f, 2), other_f = within(random, s.f, 2), G = within(random, s.G, 2),
                  other_G = within(random, s.G, 2), a = within(random, s.alpha, 2), b = within(random, s.alpha, 2);
     if (s.at(a).is_trivial(f) || s.at(b).is_trivial(f)) continue;
-    const auto change = [](const Interval& slope, double from, double to) {
-      return from == to ? Interval(0) : slope * (Interval(to) - Interval(from));
-    };
-    const double first = s.at(a).value(f, G), last = s.at(b).value(other_f, other_G), slack = 1e-11 * (1 + first);
-    const Interval all = change(bounds.df, f, other_f) + change(bounds.dG, G, other_G) + change(bounds.dalpha, a, b);
-    EXPECT_TRUE(all.lo - slack <= last - first && last - first <= all.hi + slack)
-        << last - first << " is not in " << all.lo << " .. " << all.hi;
+    expect_holds_difference(bounds, {f, G, a, s.at(a).value(f, G)},
+                            {other_f, other_G, b, s.at(b).value(other_f, other_G)});
   }
 }
 

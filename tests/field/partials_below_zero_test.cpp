@@ -10,48 +10,49 @@
 #include <gtest/gtest.h>
 
 #include "field/math/box3.h"
+#include "tests/field/partials_check.h"
 #include "tests/field/random.h"
 
 namespace marrow {
 namespace {
 
+using test::expect_holds;
+using test::expect_holds_difference;
 using test::Random;
+using test::text;
+using test::within;
 
+// One setting of the operator and ranges of what it is applied to.
 struct Setting {
-  Correction correction;
-  Interval f, G;
-  Interval value() const { return correction_bounds(correction, f, G); }
-  PartialBounds partials() const { return partials_below_zero(correction, correction.alpha(), value(), f, G); }
+  int degree;
+  bool cavity;
+  Interval alpha, f, G;
+
+  Correction at(double angle) const { return {degree, angle, cavity, Projection::Paper}; }
+  Interval value() const { return hull(correction_bounds(at(alpha.lo), f, G), correction_bounds(at(alpha.hi), f, G)); }
+  PartialBounds partials() const { return partials_below_zero(at(alpha.lo), alpha, value(), f, G); }
 };
 
-// From far beyond the surface, where the guard acts, to deep inside; G also 0, and beside the curve.
+// From far beyond the surface, where the guard acts, to deep inside; G also 0, and beside the curve. Half of them with
+// a range of angles.
 Setting random_setting(Random& random, double width) {
   const int n = random.whole(3, 10);
   const double f = std::exp(random.between(-9, 3));
   const double on_curve = ReferenceCurve(n).at(f) * std::fabs(1 + width * random.between(-2, 1));
   const double G = random.between(0, 1) < 0.3 ? on_curve : on_curve * std::pow(random.between(0, 1.3), 2);
-  const double end = f * (1 + width * random.between(0, 1)), G_end = G * (1 + width * random.between(0, 1));
-  return {Correction(n, random.between(-1, -1e-3), random.between(0, 1) < 0.7, Projection::Paper),
-          {f, end},
-          {random.between(0, 1) < 0.1 ? 0 : G, G_end}};
+  const double alpha = random.between(-1, -1e-3), other = std::min(0.0, alpha + width * random.between(0, 1));
+  return {.degree = n,
+          .cavity = random.between(0, 1) < 0.7,
+          .alpha = {alpha, random.between(0, 1) < 0.5 ? alpha : other},
+          .f = {f, f * (1 + width * random.between(0, 1))},
+          .G = {random.between(0, 1) < 0.1 ? 0 : G, G * (1 + width * random.between(0, 1))}};
 }
 
 double width_of_either(Random& random) { return std::pow(10.0, random.between(-7, 0.5)); }
 
-double within(Random& random, const Interval& x, int k) {
-  return k == 0 ? x.lo : k == 1 ? x.hi : std::clamp(random.between(x.lo, x.hi), x.lo, x.hi);
-}
-
 std::string text(const Setting& s) {
-  const auto range = [](const Interval& x) { return std::to_string(x.lo) + " .. " + std::to_string(x.hi); };
-  return "degree " + std::to_string(s.correction.degree()) + (s.correction.cavity() ? " cavity" : "") + " alpha " +
-         std::to_string(s.correction.alpha()) + " f " + range(s.f) + " G " + range(s.G);
-}
-
-void expect_holds(const Interval& bounds, double x, const char* name) {
-  const double slack = 1e-8 * std::fabs(x) + 1e-9;
-  EXPECT_TRUE(bounds.lo - slack <= x && x <= bounds.hi + slack)
-      << name << " " << x << " is not in " << bounds.lo << " .. " << bounds.hi;
+  return "degree " + std::to_string(s.degree) + (s.cavity ? " cavity" : "") + " alpha " + text(s.alpha) + " f " +
+         text(s.f) + " G " + text(s.G);
 }
 
 TEST(BelowZero, BoundsHoldEveryValue) {
@@ -61,8 +62,9 @@ TEST(BelowZero, BoundsHoldEveryValue) {
     const Setting s = random_setting(random, width_of_either(random));
     const Interval bounds = s.value();
     for (int k = 0; k < 4; ++k) {
-      const double f = within(random, s.f, k), G = within(random, s.G, (i + k) % 4), C = s.correction.value(f, G);
-      behind += s.correction.in_cavity_branch(f, G);
+      const Correction c = s.at(within(random, s.alpha, k));
+      const double f = within(random, s.f, k), G = within(random, s.G, (i + k) % 4), C = c.value(f, G);
+      behind += c.in_cavity_branch(f, G);
       EXPECT_TRUE(bounds.contains(C)) << text(s) << ": " << C << " is not in " << bounds.lo << " .. " << bounds.hi;
     }
   }
@@ -79,31 +81,24 @@ TEST(BelowZero, BoundsHoldThePartialsOfEveryPlace) {
     known += bounds.df.hi < Box3::inf;
     for (int k = 0; k < 4; ++k) {
       const double f = within(random, s.f, k), G = within(random, s.G, (i + k) % 4);
-      const CorrectionPartials p = s.correction.partials(f, G);
-      expect_holds(bounds.df, p.df, "df");
-      expect_holds(bounds.dG, p.dG, "dG");
+      expect_holds(bounds, s.at(within(random, s.alpha, k)).partials(f, G));
     }
   }
   EXPECT_GT(known, 100'000);
 }
 
-// The mean value theorem, over jumps of the derivatives too: what slopes of rays are used for.
+// Over jumps of the derivatives, too.
 TEST(BelowZero, BoundsHoldDifferencesOfValues) {
   Random random(20261129);
   for (int i = 0; i < 200'000 && !HasFailure(); ++i) {
     const Setting s = random_setting(random, std::pow(10.0, random.between(-3, 0.5)));
     SCOPED_TRACE(text(s));
     const PartialBounds bounds = s.partials();
-    const auto pair = [&](const Interval& x) { return std::pair{within(random, x, 2), within(random, x, 3)}; };
-    const auto [f, other_f] = pair(s.f);
-    const auto [G, other_G] = pair(s.G);
-    const double C = s.correction.value(f, G);
-    const auto expect_slope = [&](const Interval& of, double step, double rise, const char* name) {
-      if (std::fabs(step) < 1e-5 * (f + G)) return;
-      expect_holds({of.lo - 1e-9, of.hi + 1e-9}, rise / step, name);
+    const auto place = [&] {
+      const double f = within(random, s.f, 2), G = within(random, s.G, 2), alpha = within(random, s.alpha, 2);
+      return test::AppliedTo{f, G, alpha, s.at(alpha).value(f, G)};
     };
-    expect_slope(bounds.df, other_f - f, s.correction.value(other_f, G) - C, "along f");
-    expect_slope(bounds.dG, other_G - G, s.correction.value(f, other_G) - C, "along G");
+    expect_holds_difference(bounds, place(), place());
   }
 }
 
@@ -116,9 +111,10 @@ TEST(BelowZero, BoundsOfShortIntervalsAreShort) {
   for (int i = 0; i < 50'000; ++i) {
     Setting s = random_setting(random, width);
     if (s.G.lo == 0) s.G.hi *= width;
+    s.alpha.hi = s.alpha.lo;  // behind the critical point nothing is known of ranges
     const Interval value = s.value();
     widest = std::max(widest, value.width() / (s.f.hi + s.G.hi));
-    if (value.lo == 0 || (s.G.lo == 0 && !s.correction.cavity())) continue;  // is cut; dC/dG is infinite
+    if (value.lo == 0 || (s.G.lo == 0 && !s.cavity)) continue;  // is cut; dC/dG is infinite
     ++all;
     const PartialBounds bounds = s.partials();
     known += bounds.df.hi < Box3::inf && bounds.dG.hi < Box3::inf;
