@@ -37,6 +37,7 @@ class EmbreeSurfaces final : public Surfaces {
   void first_hits(std::span<const Ray>, std::span<std::optional<SurfaceHit>>) const override;
   void first_hits(std::span<const Ray>, std::span<std::optional<SurfaceHit>>, std::span<RayRecord>) const override;
   void occluded(std::span<const Ray>, std::span<std::uint8_t> hidden) const override;
+  bool traces_packets() const override { return whole_->traces_packets(); }
   Box3 bounds() const override { return extent_; }
   void refine() const override;
 

@@ -68,6 +68,8 @@ class Surfaces {
   virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> hidden) const {
     for (std::size_t i = 0; i < rays.size(); ++i) hidden[i] = occluded(rays[i]) ? 1 : 0;
   }
+  /// Whether rays are traced sooner together than one by one.
+  virtual bool traces_packets() const { return false; }
   /// Of all finite objects; planes do not count. Empty when there are none.
   virtual Box3 bounds() const = 0;
   /// Uses what earlier rays have found for a finer division of space: later rays get the same answers, sooner. To be

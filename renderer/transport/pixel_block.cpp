@@ -103,9 +103,9 @@ void render_block(const PixelJob& job, const PixelWindow& window, Pass pass, Fil
   add_samples(job, block);
 }
 
-BlockSize block_size(int samples) {
+BlockSize block_size(int samples, int side) {
   const int halvings = std::bit_width(static_cast<unsigned>(samples)) - 1;
-  return {std::max(1, block_side >> (halvings + 1) / 2), std::max(1, block_side >> halvings / 2)};
+  return {std::max(1, side >> (halvings + 1) / 2), std::max(1, side >> halvings / 2)};
 }
 
 }  // namespace marrow

@@ -28,11 +28,15 @@ struct PixelJob {
 /// fits into a cache.
 constexpr int block_side = 32;
 
+/// The same where rays are traced one by one and may take long: a picture is interrupted between blocks.
+constexpr int side_of_block_of_lone_rays = 4;
+
 struct BlockSize {
   int width, height;  ///< in pixels
 };
-/// Of blocks with so many samples a pixel, at least one: they hold 32 x 32 samples, or up to twice as many.
-BlockSize block_size(int samples);
+/// Of blocks with so many samples a pixel, at least one: they hold side x side samples, or up to twice as many, or the
+/// samples of one pixel. The side is a power of two.
+BlockSize block_size(int samples, int side);
 
 /// The samples of a pass of a few pixels of the film, together. A pixel's samples are added in order,
 /// and have the same bits whatever pixels are with it. The channels free of noise come from a ray through the pixel's

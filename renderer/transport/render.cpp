@@ -85,15 +85,21 @@ struct Job {
   std::unique_ptr<const Integrator> integrator = make_integrator(settings);
   int samples = sample_count(settings);
   PixelJob pixels{scene, *integrator, settings.seed, samples};
+  int side_of_block = scene.surfaces->traces_packets() ? block_side : side_of_block_of_lone_rays;
 
   bool interrupted() const { return options.interrupted && options.interrupted->load(std::memory_order_relaxed); }
 };
 
-void render_tile(const Job& job, const PixelWindow& tile, Pass pass, Film& film) {
-  const auto [width, height] = block_size(pass.count);
+void render_tile(const Job& job, const PixelWindow& tile, Pass pass, Film& film, Meter& meter) {
+  const auto [width, height] = block_size(pass.count, job.side_of_block);
   for (int y = tile.y0; y < tile.y1; y += height)
-    for (int x = tile.x0; x < tile.x1; x += width)
-      render_block(job.pixels, {x, y, std::min(x + width, tile.x1), std::min(y + height, tile.y1)}, pass, film);
+    for (int x = tile.x0; x < tile.x1; x += width) {
+      if (job.interrupted()) return;
+      const PixelWindow block{x, y, std::min(x + width, tile.x1), std::min(y + height, tile.y1)};
+      render_block(job.pixels, block, pass, film);
+      meter.add(static_cast<std::uint64_t>(block.width()) * static_cast<std::uint64_t>(block.height()) *
+                static_cast<std::uint64_t>(pass.count));
+    }
 }
 
 template <class Visit>
@@ -109,17 +115,15 @@ void for_each_tile(const Job& job, const std::vector<PixelWindow>& tiles, const 
 }
 
 void render_pass(const Job& job, const std::vector<PixelWindow>& tiles, Pass pass, Film& film, Meter& meter) {
-  for_each_tile(job, tiles, [&](const PixelWindow& tile) {
-    render_tile(job, tile, pass, film);
-    meter.add(static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height()) *
-              static_cast<std::uint64_t>(pass.count));
-  });
+  for_each_tile(job, tiles, [&](const PixelWindow& tile) { render_tile(job, tile, pass, film, meter); });
 }
 
 // Before the first pass: all its rays then meet space that is divided, through surfaces that are refined.
 void scout(const Job& job, const PixelWindow& window) {
   for (const auto [step, side] : scout_rounds) {
-    for_each_tile(job, tiles_of(window, side), [&](const PixelWindow& tile) { send_scouts(job.pixels, tile, step); });
+    const int together = std::min(side, step * job.side_of_block);
+    for_each_tile(job, tiles_of(window, together),
+                  [&](const PixelWindow& tile) { send_scouts(job.pixels, tile, step); });
     job.scene.surfaces->refine();
   }
 }

@@ -72,6 +72,7 @@ class CountingSurfaces final : public Surfaces {
     shadow_rays.push_back(rays.size());
     surfaces_.occluded(rays, hidden);
   }
+  bool traces_packets() const override { return true; }
   Box3 bounds() const override { return surfaces_.bounds(); }
 
   mutable std::vector<std::size_t> together, shadow_rays;
@@ -95,11 +96,20 @@ TEST(Render, RaysOfABlockOfPixelsGoTogether) {
 }
 
 TEST(Render, BlocksOfMoreSamplesHaveFewerPixels) {
-  for (int samples = 1; samples <= 16; ++samples) {
-    const auto [width, height] = block_size(samples);
-    EXPECT_GE(width * height * samples, block_side * block_side) << samples;
-    EXPECT_LT(width * height * samples, 2 * block_side * block_side) << samples;
-  }
+  for (const int side : {block_side, side_of_block_of_lone_rays})
+    for (int samples = 1; samples <= 16; ++samples) {
+      const auto [width, height] = block_size(samples, side);
+      EXPECT_GE(width * height * samples, side * side) << samples;
+      EXPECT_LT(width * height * samples, 2 * side * side) << samples;
+    }
+}
+
+// Blocks are smaller where rays gain nothing by company.
+TEST(Render, BitsDoNotDependOnWhatGoesTogether) {
+  const CountingSurfaces in_packets(ball_on_floor);
+  const RenderSettings settings{.samples_per_pixel = 5};
+  expect_same_bits(picture_of(to_rows(render(studio(70, 50), settings))),
+                   picture_of(to_rows(render(studio(70, 50, in_packets), settings, {.threads = 1}))));
 }
 
 // A program that embeds the renderer may have set another rounding, on which every sum depends.
@@ -187,6 +197,36 @@ TEST(Render, InterruptedRenderKeepsWhatItHas) {
   EXPECT_EQ(none.stopped_by, StopReason::Interrupted);
   EXPECT_EQ(none.pixels()[0].samples(), 0u);
   EXPECT_EQ(none.pixels()[0].mean(), Rgb());
+}
+
+// Rays may take long one by one. Those of one block are all that may still be traced: 4 x 4 rays of the camera.
+TEST(Render, InterruptedRenderEndsBeforeItsTile) {
+  class Interrupting final : public Surfaces {
+   public:
+    explicit Interrupting(std::size_t after) : after_(after) {}
+    using Surfaces::first_hit;
+    std::optional<SurfaceHit> first_hit(const Ray& ray, RayRecord& record) const override {
+      if (++rays > after_) interrupted = true;
+      return ball_on_floor.first_hit(ray, record);
+    }
+    bool occluded(const Ray& ray) const override { return ball_on_floor.occluded(ray); }
+    Box3 bounds() const override { return ball_on_floor.bounds(); }
+    mutable std::size_t rays = 0;
+    mutable std::atomic<bool> interrupted = false;
+
+   private:
+    std::size_t after_;
+  };
+  constexpr std::size_t scouts = 32 * 32 / (32 * 32) + 32 * 32 / (8 * 8), after = scouts + 100;
+  const Interrupting surfaces(after);
+  Progress last;
+  const Film film =
+      render(studio(32, 32, surfaces), {.integrator = RenderSettings::Integrator::Normals},
+             {.threads = 1, .progress = [&](const Progress& p) { last = p; }, .interrupted = &surfaces.interrupted});
+  EXPECT_EQ(film.stopped_by, StopReason::Interrupted);
+  EXPECT_GT(surfaces.rays, after);
+  EXPECT_LE(surfaces.rays, after + 16);
+  EXPECT_EQ(last.done, surfaces.rays - scouts);
 }
 
 // A35: a Lambert sphere under a distant light, mean over its disc. N = 64 x 64 pixels of 16 samples; the edge of the
