@@ -1,7 +1,5 @@
 #include "renderer/geometry/box_index.h"
 
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include <embree3/rtcore.h>
@@ -13,9 +11,6 @@ namespace {
 
 // One after the other is sooner.
 constexpr std::size_t few = 16;
-
-float below(double v) { return std::nextafter(static_cast<float>(v), -std::numeric_limits<float>::infinity()); }
-float above(double v) { return std::nextafter(static_cast<float>(v), std::numeric_limits<float>::infinity()); }
 
 // What Embree wants of boxes, while it builds its hierarchy.
 struct PaddedBoxes {
@@ -31,9 +26,8 @@ void bounds_callback(const RTCBoundsFunctionArguments* a) {
     *a->bounds_o = {1, 1, 1, 0, -1, -1, -1, 0};  // Embree leaves it out
     return;
   }
-  const Box3 padded = Box3{box.lower - middle, box.upper - middle}.padded(margin);
-  *a->bounds_o = {below(padded.lower.x), below(padded.lower.y), below(padded.lower.z), 0,
-                  above(padded.upper.x), above(padded.upper.y), above(padded.upper.z), 0};
+  const auto [lower, upper] = box_in_floats(box, middle, margin);
+  *a->bounds_o = {lower[0], lower[1], lower[2], 0, upper[0], upper[1], upper[2], 0};
 }
 
 }  // namespace

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 
 #include "field/math/box3.h"
 
@@ -22,6 +25,23 @@ inline double margin_of_doubles(const Box3& box, double margin_of_floats) {
   const double own = std::ldexp(max_component(box.size()), -6),
                rounding = std::ldexp(16 * largest_coordinate(box), -52);
   return std::min(margin_of_floats, std::max(own, rounding));
+}
+
+/// A box as Embree sees it.
+struct FloatBox {
+  std::array<float, 3> lower, upper;
+};
+
+/// The padded box with the origin moved to `middle`, rounded outward.
+inline FloatBox box_in_floats(const Box3& box, const Vec3d& middle, double margin) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const Box3 padded = Box3{box.lower - middle, box.upper - middle}.padded(margin);
+  FloatBox in_floats;
+  for (std::size_t k = 0; k < 3; ++k) {
+    in_floats.lower[k] = std::nextafter(static_cast<float>(padded.lower[k]), -infinity);
+    in_floats.upper[k] = std::nextafter(static_cast<float>(padded.upper[k]), infinity);
+  }
+  return in_floats;
 }
 
 }  // namespace marrow

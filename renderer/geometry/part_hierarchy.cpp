@@ -51,15 +51,10 @@ struct Query : RTCIntersectContext {
 
 const PartsOfSolid& parts_of(void* user_data) { return *static_cast<const PartsOfSolid*>(user_data); }
 
-float below(double v) { return std::nextafter(static_cast<float>(v), -std::numeric_limits<float>::infinity()); }
-float above(double v) { return std::nextafter(static_cast<float>(v), std::numeric_limits<float>::infinity()); }
-
 void bounds_callback(const RTCBoundsFunctionArguments* a) {
   const PartsOfSolid& p = parts_of(a->geometryUserPtr);
-  const Box3& own = p.parts[a->primID].box;
-  const Box3 box = Box3{own.lower - p.middle, own.upper - p.middle}.padded(p.margin);
-  *a->bounds_o = {below(box.lower.x), below(box.lower.y), below(box.lower.z), 0,
-                  above(box.upper.x), above(box.upper.y), above(box.upper.z), 0};
+  const auto [lower, upper] = box_in_floats(p.parts[a->primID].box, p.middle, p.margin);
+  *a->bounds_o = {lower[0], lower[1], lower[2], 0, upper[0], upper[1], upper[2], 0};
 }
 
 constexpr float done = -std::numeric_limits<float>::infinity();  // nothing more is asked of a ray
