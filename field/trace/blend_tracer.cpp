@@ -93,9 +93,8 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
                             .around = ray.around};
   Root root = state_->kernels.first_root(b.view(), cube.local, query);
   // By rounding a place in the block may come before it is entered.
-  const auto note = [&] {
-    log.add({std::max(cube.to_world(root.searched_from), enter), static_cast<std::uint32_t>(root.evaluations)});
-  };
+  const auto behind_entry = [&](float t) { return std::max(cube.to_world(t), enter); };
+  const auto note = [&] { log.add({behind_entry(root.searched_from), static_cast<std::uint32_t>(root.evaluations)}); };
   note();
   if (root.begins_outside) log.side = CellLog::Side::Outside;
   if (root.enters_inside && begins_inside(state_->field, state_->bounds, state_->serial, ray)) {
@@ -104,9 +103,9 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
     root = state_->kernels.first_root(b.view(), cube.local, query);
     note();
   }
-  log.undecided = std::min(log.undecided, std::max(cube.to_world(root.undecided), enter));
+  log.undecided = std::min(log.undecided, behind_entry(root.undecided));
   if (!root.hit) return {};
-  const double t = std::max(cube.to_world(root.t), ray.t_min);
+  const double t = behind_entry(root.t);
   const bool ends = any && !query.leaving && t > ray.t_max - nearly_ended * b.half();
   return CellHit{ends ? ray.t_max : t, &b};
 }

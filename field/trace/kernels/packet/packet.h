@@ -151,7 +151,9 @@ inline void leave_blocks(const Frames& frames, const PacketView& rays, const Lan
     const SomeRays ray(rays, first);
     const RaysInCube<Doubles> block = frames.of(ray, first);
     const Doubles exit = load(out.exit + first), enter = load(out.enter + first);
-    Doubles at = first_max(block.to_world(load_floats(roots.t + first)), ray.t_min);
+    // By rounding a place in the block may come before it is entered: then another cell may hold the hit, too, and
+    // which of them counts must not depend on where the ray ends.
+    Doubles at = first_max(block.to_world(load_floats(roots.t + first)), enter);
     if (any_root) at = at > ray.t_max - nearly_ended * block.half ? ray.t_max : at;
     store(at, out.t + first);
     store(block.to_world(load_floats(roots.undecided + first)), out.undecided + first);
