@@ -31,7 +31,7 @@ struct RenderOptions {
   std::optional<double> time_limit_s{};
   /// Called by one thread at a time, at most ten times a second, and once at the end.
   std::function<void(const Progress&)> progress{};
-  /// When it becomes true the few pixels at work are finished and the film is returned; a signal handler may set it.
+  /// When it becomes true blocks of pixels at work are finished and the film is returned. Signal handlers may set it.
   const std::atomic<bool>* interrupted = nullptr;
 };
 
