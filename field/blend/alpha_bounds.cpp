@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "field/blend/gather.h"
+#include "field/blend/mean_angles.h"
 #include "field/skeleton/distance.h"
 
 namespace marrow {
@@ -164,6 +165,7 @@ AngleBounds alpha_bounds(const BlendField& blend, const SumBounds& sum, const Bo
   if (blend.alpha_source)
     return {clamped(blend.alpha_source->bounds(box), {-1, std::numbers::pi / 2}), blend.alpha_source->slopes(box)};
   if (blend.local_contact) return local_contact_angles(blend, sum);
+  if (const auto mean = mean_angles(blend, sum)) return *mean;
   return blend.alpha_per_skeleton ? per_skeleton_angles(blend, sum) : directional_angles(blend, sum);
 }
 

@@ -1,4 +1,4 @@
-// Running tensors over strands, forward and backward.
+// Few strands pair by pair; many by running tensors, forward and backward.
 #include "field/blend/directional_alpha.h"
 
 #include <cmath>
@@ -45,15 +45,25 @@ class Side {
   double field_ = 0, least_ = 0;
 };
 
-// What the strands on one side give to the numerator's and the denominator's gradients.
-void add_slopes(const Hair& hair, const Strand& strand, const Side& side, Vec3d& numerator, Vec3d& denominator) {
-  numerator += strand.field_gradient * side.angles(hair);
-  denominator += strand.field_gradient * (2 * side.field());
-  // u = m / |m|: du = (I - u u^T) dm / |m|
-  const Vec3d by_u = side.slope(hair);
-  const Vec3d by_m = (by_u - hair.u * dot(hair.u, by_u)) * (hair.f * hair.inverse_length);
-  numerator += strand.direction_jacobian.transposed_times(by_m);
-}
+// What the other strands give to the numerator's and the denominator's gradients through one of them: `angles` is the
+// sum of their f_j 2 gamma_ij, `by_u` its slope by u_i, `field` the sum of f_j.
+struct Slopes {
+  Vec3d numerator{}, denominator{};
+
+  void add(const Hair& hair, const Strand& strand, double angles, const Vec3d& by_u, double field) {
+    numerator += strand.field_gradient * angles;
+    denominator += strand.field_gradient * (2 * field);
+    // u = m / |m|: du = (I - u u^T) dm / |m|
+    const Vec3d by_m = (by_u - hair.u * dot(hair.u, by_u)) * (hair.f * hair.inverse_length);
+    numerator += strand.direction_jacobian.transposed_times(by_m);
+  }
+  void add(const Hair& hair, const Strand& strand, const Side& side) {
+    add(hair, strand, side.angles(hair), side.slope(hair), side.field());
+  }
+  AlphaSample of_mean(double alpha, double weights) const {
+    return {.value = alpha, .gradient = (numerator - denominator * alpha) / weights};
+  }
+};
 
 AlphaSample mean_of_most(std::span<const Strand> strands) {
   double sum = 0, field = 0;
@@ -64,30 +74,70 @@ AlphaSample mean_of_most(std::span<const Strand> strands) {
   return {.value = field > 0 ? sum / field : strands.empty() ? 0 : strands.front().bounds.most};
 }
 
-}  // namespace
+// Of a strand: sums over all others, as Slopes::add() takes them.
+struct Others {
+  double angles = 0, field = 0;
+  Vec3d by_u{};
 
-AlphaSample directional_alpha(std::span<const Strand> strands, bool with_gradient) {
-  std::vector<Hair> hairs;
-  hairs.reserve(strands.size());
-  for (const Strand& s : strands) hairs.push_back(hair_of(s));
+  void add(const Hair& other, double gamma, double by_cosine) {
+    angles += other.f * (2 * gamma);
+    field += other.f;
+    by_u += other.u * (other.f * (2 * by_cosine));
+  }
+};
+
+AlphaSample over_pairs(std::span<const Strand> strands, const std::vector<Hair>& hairs) {
+  std::vector<Others> others(hairs.size());
   double numerator = 0, denominator = 0;
-  Vec3d numerator_slope, denominator_slope;
+  for (std::size_t i = 0; i < hairs.size(); ++i) {
+    const double before = others[i].angles, field_before = others[i].field;
+    numerator += hairs[i].f * before;
+    denominator += 2 * hairs[i].f * field_before;
+    for (std::size_t j = i + 1; j < hairs.size(); ++j) {
+      const double span = 0.5 * (hairs[i].span + hairs[j].span), cosine = dot(hairs[i].u, hairs[j].u);
+      const double seventh = span * integer_power(cosine, 7);
+      const double gamma = seventh * cosine + 0.5 * (hairs[i].least + hairs[j].least);
+      others[i].add(hairs[j], gamma, 8 * seventh);
+      others[j].add(hairs[i], gamma, 8 * seventh);
+    }
+  }
+  if (!(denominator > 0)) return mean_of_most(strands);
+  Slopes slopes;
+  for (std::size_t i = 0; i < hairs.size(); ++i)
+    slopes.add(hairs[i], strands[i], others[i].angles, others[i].by_u, others[i].field);
+  return slopes.of_mean(numerator / denominator, denominator);
+}
+
+AlphaSample by_tensors(std::span<const Strand> strands, const std::vector<Hair>& hairs, bool with_gradient) {
+  double numerator = 0, denominator = 0;
+  Slopes slopes;
   Side before;
   for (std::size_t i = 0; i < hairs.size(); ++i) {
     numerator += hairs[i].f * before.angles(hairs[i]);
     denominator += 2 * hairs[i].f * before.field();
-    if (with_gradient) add_slopes(hairs[i], strands[i], before, numerator_slope, denominator_slope);
+    if (with_gradient) slopes.add(hairs[i], strands[i], before);
     before.add(hairs[i]);
   }
   if (!(denominator > 0)) return mean_of_most(strands);
-  AlphaSample alpha{.value = numerator / denominator};
-  if (!with_gradient) return alpha;
+  if (!with_gradient) return {.value = numerator / denominator};
   Side after;
   for (std::size_t i = hairs.size(); i-- > 0;) {
-    add_slopes(hairs[i], strands[i], after, numerator_slope, denominator_slope);
+    slopes.add(hairs[i], strands[i], after);
     after.add(hairs[i]);
   }
-  alpha.gradient = (numerator_slope - denominator_slope * alpha.value) / denominator;
+  return slopes.of_mean(numerator / denominator, denominator);
+}
+
+}  // namespace
+
+AlphaSample directional_alpha(std::span<const Strand> strands, bool with_gradient) {
+  constexpr std::size_t few = 64;
+  std::vector<Hair> hairs;
+  hairs.reserve(strands.size());
+  for (const Strand& s : strands) hairs.push_back(hair_of(s));
+  if (hairs.size() > few) return by_tensors(strands, hairs, with_gradient);
+  AlphaSample alpha = over_pairs(strands, hairs);
+  if (!with_gradient) alpha.gradient = {};
   return alpha;
 }
 

@@ -45,11 +45,12 @@ struct Angles {
 };
 
 // grad (A / f) = (grad A - alpha grad f) / f
-template <Derivatives Order>
-Gathered per_skeleton(const BlendField& blend, const Vec3d& p) {
+// Here and below each_primitive(visit) does as for_each_primitive().
+template <class EachPrimitive>
+Gathered per_skeleton(const BlendField& blend, const Vec3d& p, const EachPrimitive& each_primitive) {
   Gathered all;
   Angles angles;
-  for_each_primitive<Order>(blend, p, [&](const SkeletonSample& s, const auto& list, std::size_t i) {
+  each_primitive([&](const SkeletonSample& s, const auto& list, std::size_t i) {
     all.sum += s;
     angles.add(blend, s, list, i, p);
   });
@@ -75,12 +76,12 @@ DirectionSample direction_of(const BlendField& blend, const SkeletonSample& s, c
   }
 }
 
-template <Derivatives Order>
-Gathered by_direction(const BlendField& blend, const Vec3d& p) {
+template <Derivatives Order, class EachPrimitive>
+Gathered by_direction(const BlendField& blend, const Vec3d& p, const EachPrimitive& each_primitive) {
   Gathered all;
   std::vector<Strand> strands(blend.direction_bounds.size());
   for (std::size_t i = 0; i < strands.size(); ++i) strands[i].bounds = blend.direction_bounds[i];
-  for_each_primitive<Order>(blend, p, [&](const SkeletonSample& s, const auto& list, std::size_t i) {
+  each_primitive([&](const SkeletonSample& s, const auto& list, std::size_t i) {
     all.sum += s;
     Strand& strand = strands[list.strands[i]];
     const DirectionSample direction = direction_of(blend, s, list, i, p);
@@ -164,8 +165,9 @@ Gathered with_angle(const BlendField& blend, const Vec3d& p, const AlphaSample& 
 
 template <Derivatives Order>
 Gathered gather_by_rule(const BlendField& blend, const Vec3d& p) {
-  if (blend.alpha_per_skeleton) return per_skeleton<Order>(blend, p);
-  if (!blend.direction_bounds.empty()) return by_direction<Order>(blend, p);
+  const auto each_primitive = [&](const auto& visit) { for_each_primitive<Order>(blend, p, visit); };
+  if (blend.alpha_per_skeleton) return per_skeleton(blend, p, each_primitive);
+  if (!blend.direction_bounds.empty()) return by_direction<Order>(blend, p, each_primitive);
   if (blend.local_contact) return by_local_contact<Order>(blend, p);
   if (blend.alpha_source) return with_angle<Order>(blend, p, blend.alpha_source->at(p));
   return with_angle<Order>(blend, p, {.value = blend.alpha});
@@ -177,6 +179,16 @@ std::optional<Neighbourhood> neighbourhood_at(const BlendField& blend, const Vec
   SkeletonSample sum;
   const Neighbourhood place = told<Derivatives::ScaleInvariant>(blend, p, sum);
   return is_usable(sum) ? std::optional(place) : std::nullopt;
+}
+
+AlphaSample alpha_of(const BlendField& blend, const Vec3d& p, const std::vector<SumBounds::Integral>& integrals) {
+  const auto each_primitive = [&](const auto& visit) {
+    visit_integrals(blend, integrals, [&](const SumBounds::Integral& integral, const auto& list, std::size_t i) {
+      visit(integral.sample, list, i);
+    });
+  };
+  if (blend.alpha_per_skeleton) return per_skeleton(blend, p, each_primitive).alpha;
+  return by_direction<Derivatives::First>(blend, p, each_primitive).alpha;
 }
 
 template <Derivatives Order>

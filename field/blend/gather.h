@@ -3,9 +3,11 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "field/blend/blend_field.h"
 #include "field/blend/local_contact.h"
+#include "field/blend/sum_bounds.h"
 
 namespace marrow {
 
@@ -16,6 +18,9 @@ struct Gathered {
 
 /// What the rule of local contact is told at p, with no gradients. Nothing where the sum is 0 or infinite.
 std::optional<Neighbourhood> neighbourhood_at(const BlendField&, const Vec3d& p);
+
+/// The angle of a blend of integrals that has `alpha_per_skeleton` or `direction_bounds`, from their samples at p.
+AlphaSample alpha_of(const BlendField&, const Vec3d& p, const std::vector<SumBounds::Integral>&);
 
 template <Derivatives>
 Gathered gather(const BlendField&, const Vec3d& p);

@@ -63,4 +63,17 @@ void for_each_primitive(const BlendField& blend, const Vec3d& p, const Visit& vi
   all(blend.distance_arcs, [&](const ArcSkeleton& s) { return distance_field<Order>(s, p, kernel); });
 }
 
+/// Calls visit(item, list, i) for each integral, in the order of SumBounds::integrals().
+template <class Items, class Visit>
+void visit_integrals(const BlendField& blend, const Items& items, const Visit& visit) {
+  auto item = items.begin();
+  const auto all = [&](const auto& list) {
+    for (std::size_t i = 0; i < list.size(); ++i, ++item) visit(*item, list, i);
+  };
+  all(blend.points);
+  all(blend.segments);
+  all(blend.triangles);
+  all(blend.arcs);
+}
+
 }  // namespace marrow

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "field/blend/blend_field.h"
 #include "field/blend/distance_slopes.h"
@@ -59,6 +60,16 @@ class SumBounds {
   /// Sources: the same from one remainder for all of them.
   void add(const SourceSums&);
 
+  /// What was added of one integral: a sum of |p - q|^-m with all q at least `distance` away from the middle, perhaps
+  /// in four dimensions.
+  struct Integral {
+    SkeletonSample sample;
+    double distance;
+    int m;
+  };
+  /// All of a blend whose angle is a mean over its skeletons or strands: of its points, segments, triangles, arcs.
+  const std::vector<Integral>& integrals() const { return integrals_; }
+
   const Vec3d& center() const { return center_; }
   /// Half the diagonal of the box.
   double rho() const { return rho_; }
@@ -98,7 +109,8 @@ class SumBounds {
   Vec3d gradient_{}, S_{};
   Matrix3 J_{};
   PrimitiveSlopes between_{};
-  bool unbounded_ = false, has_slopes_ = true;
+  bool unbounded_ = false, has_slopes_ = true, keeps_integrals_ = false;
+  std::vector<Integral> integrals_;
 };
 
 }  // namespace marrow

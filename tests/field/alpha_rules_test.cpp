@@ -26,24 +26,24 @@ using test::relative;
 
 // Eq. 15 as it stands, over pairs.
 double over_pairs(const std::vector<Strand>& strands) {
-  double angles = 0, weights = 0;
+  long double angles = 0, weights = 0;
   for (std::size_t i = 0; i < strands.size(); ++i)
     for (std::size_t j = 0; j < strands.size(); ++j) {
       if (i == j) continue;
       const Strand &a = strands[i], &b = strands[j];
       const double x = dot(a.direction, b.direction) / (length(a.direction) * length(b.direction));
       const double span = (a.bounds.most - a.bounds.least + b.bounds.most - b.bounds.least) / 2;
-      const double weight = a.field * b.field;
+      const long double weight = static_cast<long double>(a.field) * b.field;
       angles += weight * (span * integer_power(x, 8) + (a.bounds.least + b.bounds.least) / 2);
       weights += weight;
     }
-  return angles / weights;
+  return static_cast<double>(angles / weights);
 }
 
 TEST(DirectionalAlpha, IsTheSumOverPairsWithBoundsOfTheirOwn) {
   Random random(301);
   for (int i = 0; i < 200; ++i) {
-    std::vector<Strand> strands(static_cast<std::size_t>(random.whole(2, 60)));
+    std::vector<Strand> strands(static_cast<std::size_t>(random.whole(2, 120)));
     for (Strand& s : strands) {
       s.field = exp(random.between(-30, 3));
       s.direction = random.vector(1);
