@@ -97,14 +97,20 @@ class InBall {
 
 void SumBounds::add_cani_hornus(const BlendField& blend) {
   for (const auto& s : blend.cani_hornus_segments.skeletons) {
-    if (!(length(s.to - s.from) > 0)) continue;
+    if (!(length(s.to - s.from) > 0)) {
+      keep({.steepest = 0, .bent = 0});
+      continue;
+    }
     const double distance = distance_to(s, center_);
     const InBall ball(s, center_, distance, rho_);
     if (!(distance > rho_) || !ball.is_finite()) {
       add({.f = {0, inf}, .S_by = inf, .log_slope = inf});
+      keep({.f = {0, inf}});
       continue;
     }
     Between b = ball.bounds();
+    if (keeps_parts_)
+      keep({.sample = cani_hornus_field<Derivatives::First>(s, center_), .f = b.f, .steepest = b.log_slope * b.f.hi});
     if (has_slopes()) b.slopes = ball.slopes();
     add(b);
   }

@@ -124,6 +124,13 @@ std::optional<Beside> beside(const SegmentSkeleton& s, const Profile& profile, c
 }
 std::optional<Beside> beside(const auto&, const Profile&, const Kernel&, const Vec3d&, const Stretch*) { return {}; }
 
+SumBounds::Part smooth_part(const SkeletonSample& s, double steepest, double bent, double rho) {
+  constexpr double error = SumBounds::compact_error;
+  const double steep = std::min(steepest, length(s.gradient) * (1 + error) + error * steepest + bent * rho);
+  const double by = steep * rho + error * s.value;
+  return {.sample = s, .f = {std::max(0.0, s.value - by), s.value + by}, .steepest = steep, .bent = bent};
+}
+
 }  // namespace
 
 // f changes by rho sup |k'| times the share of the skeleton that the support can hold.
@@ -134,11 +141,16 @@ void SumBounds::add_compact(const BlendField& blend) {
     const double steep = steepest(profile, kernel);
     for (const auto& s : skeletons) {
       const double reach = kernel.shape * largest_radius(s);
-      if (distance_to(s, center_) > rho_ + reach) continue;
+      if (distance_to(s, center_) > rho_ + reach) {
+        keep({.steepest = 0, .bent = 0});
+        continue;
+      }
       const SkeletonSample sample = field(s);
       const double held = share(s, reach), least = least_radius(s), largest = largest_radius(s);
       const double per_length = steep * held / least * (1 + 1e-9);
-      if (const double bend = held_bend(profile, kernel, s, held); bend < inf) {
+      const double bend = held_bend(profile, kernel, s, held);
+      if (keeps_parts_) keep(smooth_part(sample, per_length, bend / (least * least), rho_));
+      if (bend < inf) {
         const auto along = beside(s, profile, kernel, center_, stretch());
         const double across = along ? along->across : rho_;
         const double crossed = crossing(s, center_, across, kernel.shape, along.has_value());

@@ -84,6 +84,16 @@ SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, cons
   return b;
 }
 
+// The same for means, which ask for |grad f| = |S| / radius.
+template <class Skeleton>
+SumBounds::Part distance_part(const Skeleton& s, const SumBounds::Between& b, const SumBounds& sum,
+                              const Kernel& kernel) {
+  const double longest = length(b.S) + b.S_by;
+  return {.sample = distance_field<Derivatives::First>(s, sum.center(), kernel),
+          .f = b.f,
+          .steepest = longest / least_radius(s) * (1 + 1e-9)};
+}
+
 // The skeletons of one strand of which the largest field counts; where several may be that, S is one of theirs.
 struct Largest {
   SumBounds::Between bounds;
@@ -122,15 +132,21 @@ void SumBounds::add_distances(const BlendField& blend) {
   const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
   const auto& list = blend.distance_segments;
   for (std::size_t i = 0; i < list.size();) {
-    Largest all(distance_bounds(list.skeletons[i], *this, kernel), i);
+    const auto bounds_of = [&](std::size_t k) {
+      const Between bounds = distance_bounds(list.skeletons[k], *this, kernel);
+      if (keeps_parts_) keep(distance_part(list.skeletons[k], bounds, *this, kernel));
+      return bounds;
+    };
+    Largest all(bounds_of(i), i);
     const std::size_t first = i++;
     for (; !list.strands.empty() && i < list.size() && list.strands[i] == list.strands[first]; ++i)
-      all.add(distance_bounds(list.skeletons[i], *this, kernel), i);
+      all.add(bounds_of(i), i);
     if (has_slopes()) all.bounds.slopes = all.slopes(list.skeletons, box_, kernel);
     add(all.bounds);
   }
   const auto add_one = [&](const auto& s) {
     Between bounds = distance_bounds(s, *this, kernel);
+    if (keeps_parts_) keep(distance_part(s, bounds, *this, kernel));
     if (has_slopes()) bounds.slopes = distance_slopes(s, box_, kernel);
     add(bounds);
   };

@@ -5,10 +5,12 @@
 #include <concepts>
 #include <vector>
 
+#include "field/blend/field_weight.h"
 #include "field/blend/gather.h"
-#include "field/blend/log_weight.h"
 #include "field/blend/primitive_visit.h"
 #include "field/blend/strand_angles.h"
+#include "field/skeleton/distance.h"
+#include "field/skeleton/radii.h"
 #include "field/skeleton/shares.h"
 
 namespace marrow {
@@ -18,34 +20,61 @@ namespace {
 constexpr double vanishing = 1e-100;
 
 bool are_integrals(const BlendField& blend) {
-  return blend.kernel != KernelFamily::Compact && blend.distance_segments.empty() && blend.distance_triangles.empty() &&
-         blend.distance_arcs.empty() && blend.cani_hornus_segments.empty();
+  return blend.distance_segments.empty() && blend.distance_triangles.empty() && blend.distance_arcs.empty() &&
+         blend.cani_hornus_segments.empty();
+}
+
+// Where one segment of a strand by distance takes over from another, with its angle and direction, both jump. So may
+// the nearest place of an arc.
+bool may_jump(const BlendField& blend) {
+  const auto& strands = blend.distance_segments.strands;
+  const bool is_arc = !blend.direction_bounds.empty() && !blend.distance_arcs.empty();
+  return is_arc || std::adjacent_find(strands.begin(), strands.end()) != strands.end();
+}
+
+// Where the angle of a skeleton is taken at one place of it and that may jump, or move at any speed.
+bool may_turn_fast(const BlendField& blend) {
+  const auto varies = [](const auto& list) {
+    for (std::size_t i = 0; i < list.alphas.size(); ++i)
+      if (list.angle_varies(i)) return true;
+    return false;
+  };
+  return varies(blend.distance_triangles) || varies(blend.distance_arcs);
+}
+
+AlphaSample middle_angle(const BlendField& blend, const SumBounds& sum) {
+  return are_integrals(blend) ? alpha_of(blend, sum.center(), sum.parts()) : alpha_at(blend, sum.center());
 }
 
 // From the middle to anywhere in the box, or on the stretch.
 AngleBounds around(const AlphaSample& middle, const MeanChange& change, const Interval& range, const SumBounds& sum) {
   const double most = change.slope, rho = sum.rho(), off = middle_is_off * most;
-  AngleBounds bounds;
+  AngleBounds bounds{range, {Interval::everything(), Interval::everything(), Interval::everything()}};
+  if (!(most < Box3::inf)) return bounds;
+  const bool is_bend_known = change.bend < Box3::inf;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double by = change.bend * rho + off;
+    const double by = is_bend_known ? change.bend * rho + off : 2 * most;
     bounds.gradient[k] = clamped({middle.gradient[k] - by, middle.gradient[k] + by}, {-most, most});
   }
-  double first = length(middle.gradient) * rho;
-  if (const Stretch* way = sum.stretch())
-    first = std::min(first, std::fabs(dot(middle.gradient, way->half)) + length(middle.gradient) * way->slack);
-  const double bent = (0.5 * change.bend * rho + off) * rho;
-  const double by = std::min(first * (1 + middle_is_off) + bent, most * rho) + 1e-12;
-  bounds.value = clamped({middle.value - by, middle.value + by}, range);
+  double by = most * rho;
+  if (is_bend_known) {
+    double first = length(middle.gradient) * rho;
+    if (const Stretch* way = sum.stretch())
+      first = std::min(first, std::fabs(dot(middle.gradient, way->half)) + length(middle.gradient) * way->slack);
+    by = std::min(by, first * (1 + middle_is_off) + (0.5 * change.bend * rho + off) * rho);
+  }
+  bounds.value = clamped({middle.value - by - 1e-12, middle.value + by + 1e-12}, range);
   return bounds;
 }
 
-// Of the logarithm of the sum, in the middle.
-Vec3d sum_slope(const std::vector<SumBounds::Integral>& integrals) {
+// Of ln f in the middle; 0 where not all weights are known by their logarithms.
+Vec3d common_slope(const std::vector<SumBounds::Part>& parts) {
   Vec3d slope{};
   double f = 0;
-  for (const SumBounds::Integral& integral : integrals) {
-    slope += integral.sample.gradient;
-    f += integral.sample.value;
+  for (const SumBounds::Part& part : parts) {
+    if (part.distance == 0) return {};
+    slope += part.sample.gradient;
+    f += part.sample.value;
   }
   return slope / f;
 }
@@ -57,41 +86,67 @@ Interval angles_along(const auto& list, std::size_t i) {
   return all;
 }
 
-// alpha = sum f_i a_i / sum f_i, where a_i may be a mean over the skeleton.
-std::optional<AngleBounds> by_skeletons(const BlendField& blend, const SumBounds& sum) {
-  const AlphaSample middle = alpha_of(blend, sum.center(), sum.integrals());
-  const Vec3d common = sum_slope(sum.integrals());
+// How fast the place moves that has all of the field, as a share of the segment: the foot of p, or, where by distance a
+// cone has the apex O and the slope k, the place Q of the axis for which p O is square to p Q. With e = |p - Q| /
+// radius, its distance from O is |p - O| / sqrt(1 - k^2 e^2), and moves by no more than 1 / (1 - k^2 e^2).
+double place_slope(const SegmentSkeleton& s, bool by_distance, const SumBounds& sum) {
+  const double size = length(s.to - s.from), k = (s.radius_to - s.radius_from) / size;
+  if (!by_distance || k == 0) return 1 / size;
+  const double foot = std::clamp(dot(sum.center() - s.from, s.to - s.from) / (size * size), 0.0, 1.0);
+  const double radius = s.radius_from + (s.radius_to - s.radius_from) * foot;
+  const double e = distance_to(s, sum.center()) / radius + sum.rho() / least_radius(s), open = 1 - k * k * e * e;
+  return open > 0 ? (1 + middle_is_off) / (size * open) : Box3::inf;
+}
+
+// A primitive as a term of alpha = sum f_i a_i / sum f_i: a_i may be a mean over the skeleton, or the angle at one
+// place.
+template <class Skeleton>
+MeanTerm angle_term(const BlendField& blend, const PrimitiveList<Skeleton>& list, std::size_t i,
+                    const SumBounds::Part& part, const FieldWeight& weight, const Vec3d& common, const SumBounds& sum) {
+  const double width = angles_along(list, i).width();
+  const auto with_values = [](MeanTerm term, const MeanChange& values) {
+    term.value_slope = values.slope;
+    term.value_bend = values.bend;
+    return term;
+  };
+  if (width == 0) return weight.term(common, sum.rho());
+  if constexpr (std::same_as<Skeleton, SegmentSkeleton>)
+    if (&list != &blend.segments) {
+      const double slope = width * place_slope(list.skeletons[i], &list == &blend.distance_segments, sum);
+      return with_values(weight.term(common, sum.rho()), {slope, Box3::inf});
+    }
+  if (!weight.log) return term_of_all(part);
+  return with_values(weight.term(common, sum.rho()), mean_within(part, width, sum.rho()));
+}
+
+AngleBounds by_skeletons(const BlendField& blend, const SumBounds& sum) {
+  const AlphaSample middle = middle_angle(blend, sum);
+  const Vec3d common = common_slope(sum.parts());
   std::vector<MeanTerm> terms;
-  terms.reserve(sum.integrals().size());
+  terms.reserve(sum.parts().size());
   Interval range(middle.value);
-  bool known = true;
-  visit_integrals(blend, sum.integrals(), [&](const auto& integral, const auto& list, std::size_t i) {
-    const auto weight = weight_of(integral, sum.rho());
-    known = known && weight;
-    if (!known || !(weight->log.value > 0)) return;
+  visit_parts(blend, sum.parts(), [&](const SumBounds::Part& part, const auto& list, std::size_t i) {
+    const FieldWeight weight = weight_of(part, sum.rho());
+    if (!weight.log && weight.f.hi == 0) return;
     const Interval angles = angles_along(list, i);
     range = hull(range, angles);
-    MeanTerm term = weight->log.term(common, sum.rho());
-    term.apart = std::max(std::fabs(angles.lo - middle.value), std::fabs(angles.hi - middle.value)) + middle_is_off;
-    const MeanChange within = weight->mean_of(angles.width());
-    term.value_slope = within.slope;
-    term.value_bend = within.bend;
-    terms.push_back(term);
+    terms.push_back(angle_term(blend, list, i, part, weight, common, sum));
+    terms.back().apart =
+        std::max(std::fabs(angles.lo - middle.value), std::fabs(angles.hi - middle.value)) + middle_is_off;
   });
-  if (!known) return {};
   return around(middle, mean_change(terms, range.width(), sum.rho()), range, sum);
 }
 
 // Points and triangles have no direction.
 template <class Skeleton>
-SkeletonDirection direction_of(const BlendField& blend, const Skeleton& skeleton, const IntegralWeight& weight,
+SkeletonDirection direction_of(const BlendField& blend, const Skeleton& skeleton, const SumBounds::Part& part,
                                const Vec3d& p) {
   if constexpr (std::same_as<Skeleton, SegmentSkeleton>) {
     return {.mean = normalize(skeleton.to - skeleton.from).vec()};
   } else if constexpr (std::same_as<Skeleton, ArcSkeleton>) {
-    if (!(weight.log.value > 0)) return {};
-    const DirectionSample d = arc_direction(skeleton, p, {blend.kernel, blend.degree, blend.kernel_shape});
-    return {.mean = d.value / weight.log.value, .turn = weight.mean_of(2)};
+    const double f = part.sample.value;
+    if (!(f > 0)) return {.range = 2};
+    return {.mean = arc_direction(skeleton, p, {blend.kernel, blend.degree, blend.kernel_shape}).value / f, .range = 2};
   } else {
     return {};
   }
@@ -104,26 +159,24 @@ Interval direction_range(const BlendField& blend) {
 }
 
 std::optional<AngleBounds> by_directions(const BlendField& blend, const SumBounds& sum) {
-  std::vector<StrandTerms> strands(blend.direction_bounds.size());
-  bool known = true;
-  double total = 0;
-  visit_integrals(blend, sum.integrals(), [&](const auto& integral, const auto& list, std::size_t i) {
-    const auto weight = weight_of(integral, sum.rho());
-    known = known && weight;
-    if (!known) return;
-    strands[list.strands[i]].add(weight->log, direction_of(blend, list.skeletons[i], *weight, sum.center()));
-    total += weight->log.value;
+  std::vector<StrandTerms> strands(blend.direction_bounds.size(), StrandTerms(sum.rho()));
+  visit_parts(blend, sum.parts(), [&](const SumBounds::Part& part, const auto& list, std::size_t i) {
+    strands[list.strands[i]].add(part, direction_of(blend, list.skeletons[i], part, sum.center()));
   });
-  if (!known) return {};
   std::vector<StrandBounds> ordered;
-  for (std::size_t i = 0; i < strands.size(); ++i)
-    if (strands[i].weight() > 0) ordered.push_back(StrandBounds::of(strands[i], blend.direction_bounds[i], sum.rho()));
+  double total = 0;
+  for (std::size_t i = 0; i < strands.size(); ++i) {
+    if (strands[i].empty()) continue;
+    ordered.push_back(StrandBounds::of(strands[i], blend.direction_bounds[i]));
+    total += ordered.back().weight.value;
+  }
   std::stable_sort(ordered.begin(), ordered.end(),
                    [](const StrandBounds& a, const StrandBounds& b) { return a.weight.value > b.weight.value; });
-  // Of one strand alone the angle is that of parallel ones.
-  if (ordered.size() < 2 || !(ordered[1].weight.value > vanishing * total)) return {};
   const Interval range = direction_range(blend);
-  const AlphaSample middle = alpha_of(blend, sum.center(), sum.integrals());
+  const AlphaSample middle = middle_angle(blend, sum);
+  // Of one strand alone the angle is that of parallel ones, everywhere; which of several is alone may change.
+  if (ordered.size() == 1) return around({.value = middle.value}, {}, range, sum);
+  if (ordered.empty() || !(ordered[1].weight.value > vanishing * total)) return {};
   return around(middle, angle_change(ordered, middle.value, range.width(), sum.rho()), range, sum);
 }
 
@@ -131,7 +184,8 @@ std::optional<AngleBounds> by_directions(const BlendField& blend, const SumBound
 
 std::optional<AngleBounds> mean_angles(const BlendField& blend, const SumBounds& sum) {
   const Interval f = sum.f();
-  if (!are_integrals(blend) || sum.unbounded() || !(f.lo > vanishing && f.hi < 0.9 * field_ceiling)) return {};
+  if (sum.unbounded() || may_jump(blend) || may_turn_fast(blend)) return {};
+  if (!(f.lo > vanishing && f.hi < 0.9 * field_ceiling)) return {};
   return blend.alpha_per_skeleton ? by_skeletons(blend, sum) : by_directions(blend, sum);
 }
 

@@ -63,17 +63,22 @@ void for_each_primitive(const BlendField& blend, const Vec3d& p, const Visit& vi
   all(blend.distance_arcs, [&](const ArcSkeleton& s) { return distance_field<Order>(s, p, kernel); });
 }
 
-/// Calls visit(item, list, i) for each integral, in the order of SumBounds::integrals().
-template <class Items, class Visit>
-void visit_integrals(const BlendField& blend, const Items& items, const Visit& visit) {
-  auto item = items.begin();
+/// Calls visit(part, list, i) for each primitive, with what SumBounds::parts() has of it. Each segment of a strand by
+/// distance is one.
+template <class Parts, class Visit>
+void visit_parts(const BlendField& blend, const Parts& parts, const Visit& visit) {
+  auto part = parts.begin();
   const auto all = [&](const auto& list) {
-    for (std::size_t i = 0; i < list.size(); ++i, ++item) visit(*item, list, i);
+    for (std::size_t i = 0; i < list.size(); ++i, ++part) visit(*part, list, i);
   };
   all(blend.points);
   all(blend.segments);
   all(blend.triangles);
   all(blend.arcs);
+  all(blend.cani_hornus_segments);
+  all(blend.distance_segments);
+  all(blend.distance_triangles);
+  all(blend.distance_arcs);
 }
 
 }  // namespace marrow

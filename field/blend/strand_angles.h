@@ -3,42 +3,51 @@
 
 #include <vector>
 
-#include "field/blend/log_weight.h"
+#include "field/blend/field_weight.h"
 
 namespace marrow {
 
-/// The direction of a skeleton in the middle, of a length of at most 1, and how fast it turns in the ball.
+/// The direction of a skeleton in the middle, of a length of at most 1, and by how much those of its places differ.
 struct SkeletonDirection {
   Vec3d mean{};
-  MeanChange turn{};
+  double range = 0;
 };
 
 /// A strand while its skeletons are added.
 class StrandTerms {
  public:
-  void add(const LogWeight&, const SkeletonDirection&);
-  double weight() const { return weight_; }
+  explicit StrandTerms(double rho = 0) : rho_(rho) {}
+  /// The part has to live as long.
+  void add(const SumBounds::Part&, const SkeletonDirection&);
+  bool empty() const { return all_.empty(); }
 
  private:
   friend struct StrandBounds;
   struct Item {
-    LogWeight weight;
+    const SumBounds::Part* part;
+    FieldWeight weight;
     SkeletonDirection direction;
   };
+  Vec3d common_slope() const;
+  FieldWeight weight(const Vec3d& common, const std::vector<MeanTerm>& terms) const;
+  bool is_straight() const;
+  MeanChange turn_of(const Vec3d& mean, std::vector<MeanTerm> terms) const;
+
+  double rho_;
   std::vector<Item> all_;
-  double weight_ = 0;
-  Vec3d slopes_{}, direction_{};  // sums over skeletons, by their weights
+  double value_ = 0;  // of the sum of the fields
+  bool is_log_ = true;
 };
 
 /// Its field and its direction u, of length 1 or 0.
 struct StrandBounds {
-  LogWeight weight;
+  FieldWeight weight;
   Vec3d u{};
   MeanChange turn{};  ///< of u in the ball; infinite where it may have no direction
   DirectionBounds angles;
 
-  /// Of a strand whose weight is above 0.
-  static StrandBounds of(const StrandTerms&, const DirectionBounds&, double rho);
+  /// Of a strand that is not empty.
+  static StrandBounds of(const StrandTerms&, const DirectionBounds&);
 };
 
 /// Of alpha = sum f_i f_j gamma_ij / sum f_i f_j, which is `alpha` in the middle and nowhere farther than `widest` from

@@ -28,7 +28,7 @@ SumBounds::SumBounds(const Box3& box, const Stretch* stretch)
 SumBounds::SumBounds(const BlendField& blend, const Box3& box, Wanted wanted, const Stretch* stretch)
     : SumBounds(box, stretch) {
   has_slopes_ = wanted == Wanted::Slopes;
-  keeps_integrals_ = blend.alpha_per_skeleton || !blend.direction_bounds.empty();
+  keeps_parts_ = blend.alpha_per_skeleton || !blend.direction_bounds.empty();
   if (blend.kernel == KernelFamily::Inverse) add_inverse(blend);
   if (blend.kernel == KernelFamily::Cauchy) add_cauchy(blend);
   if (blend.kernel == KernelFamily::Compact) add_compact(blend);
@@ -36,7 +36,7 @@ SumBounds::SumBounds(const BlendField& blend, const Box3& box, Wanted wanted, co
 }
 
 void SumBounds::add(const SkeletonSample& s, double distance, double radius, int m) {
-  if (keeps_integrals_) integrals_.push_back({s, distance, m});
+  keep({.sample = s, .distance = distance, .m = m});
   const double q = rho_ / distance;
   log_slope_ = std::max(log_slope_, q < 1 ? m / (distance - rho_) * (1 + 1e-12) : inf);
   if (!(q < 0.9) || !std::isfinite(s.value)) {

@@ -60,15 +60,16 @@ class SumBounds {
   /// Sources: the same from one remainder for all of them.
   void add(const SourceSums&);
 
-  /// What was added of one integral: a sum of |p - q|^-m with all q at least `distance` away from the middle, perhaps
-  /// in four dimensions.
-  struct Integral {
-    SkeletonSample sample;
-    double distance;
-    int m;
+  /// What is known of one primitive in the ball of `rho` around the middle.
+  struct Part {
+    SkeletonSample sample{};  ///< with its gradient where `bent` or `distance` is known
+    Interval f{};
+    double steepest = Box3::inf, bent = Box3::inf;  ///< of |grad f| and |D^2 f| at most
+    double distance = 0;  ///< above 0: of a sum of w |p - q|^-m with all q so far away, perhaps in four dimensions
+    int m = 1;
   };
-  /// All of a blend whose angle is a mean over its skeletons or strands: of its points, segments, triangles, arcs.
-  const std::vector<Integral>& integrals() const { return integrals_; }
+  /// All primitives of a blend whose angle is a mean over its skeletons or strands, in the order of visit_parts().
+  const std::vector<Part>& parts() const { return parts_; }
 
   const Vec3d& center() const { return center_; }
   /// Half the diagonal of the box.
@@ -90,6 +91,9 @@ class SumBounds {
   double log_slope() const { return log_slope_; }
 
  private:
+  void keep(const Part& part) {
+    if (keeps_parts_) parts_.push_back(part);
+  }
   Interval side(std::size_t i) const;
   Interval way(const Vec3d& slope) const;
   template <class Skeleton, class Sample>
@@ -109,8 +113,8 @@ class SumBounds {
   Vec3d gradient_{}, S_{};
   Matrix3 J_{};
   PrimitiveSlopes between_{};
-  bool unbounded_ = false, has_slopes_ = true, keeps_integrals_ = false;
-  std::vector<Integral> integrals_;
+  bool unbounded_ = false, has_slopes_ = true, keeps_parts_ = false;
+  std::vector<Part> parts_;
 };
 
 }  // namespace marrow
