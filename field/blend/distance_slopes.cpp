@@ -95,28 +95,45 @@ std::optional<PrimitiveSlopes> Places::slopes(const Kernel& kernel) const {
 }
 
 // As nearest_of() in distance_field.cpp: the place stands at t = foot + slope h^2 / radius_f along the line, which
-// moves by grad t = u + slope (2 across - slope h^2 / radius_f u) / radius_f. Where the radius at the foot may vanish
-// it has no bounds.
+// moves by grad t = u + slope (2 across - slope h^2 / radius_f u) / radius_f. Where the radius at the foot vanishes, or
+// is below 0 behind the apex of a steep cone, the larger end is nearest: a place on the segment has a radius_f of at
+// least |slope| h^2 over the way from the foot to that end. Nothing is known on the axis there.
 bool add_places(const SegmentSkeleton& s, const Box3& box, Places& places) {
   const double length = marrow::length(s.to - s.from), slope = (s.radius_to - s.radius_from) / length;
   if (!(length > 0)) return false;
   const Vec3d u = (s.to - s.from) / length;
   const Span from_start = span_of(box, s.from);
-  const Interval foot = along(from_start, u), foot_radius = s.radius_from + slope * foot;
-  if (!(foot_radius.lo > 0)) return false;
+  const Interval foot = along(from_start, u);
   const Span across = from_start - times(u, foot);
-  const Interval lean = slope * squared_length(across) / foot_radius, t = foot + lean;
+  const Interval h_squared = squared_length(across);
+  Interval foot_radius = s.radius_from + slope * foot;
+  const bool may_be_behind = !(foot_radius.lo > 0);
+  const Place start{from_start, s.radius_from, identity, true}, end{span_of(box, s.to), s.radius_to, identity, true};
+  if (may_be_behind) {
+    const Interval to_larger = slope > 0 ? length - foot : foot;
+    const double least = std::fabs(slope) * h_squared.lo / to_larger.hi * (1 - 1e-9);
+    if (!(least > 0 && to_larger.hi > 0)) return false;
+    if (foot_radius.hi < least) {
+      places.add(slope > 0 ? end : start);
+      return true;
+    }
+    foot_radius.lo = least;
+  }
+  const Interval lean = slope * h_squared / foot_radius, t = foot + lean;
   const double slack = 1e-12 * length;
-  const bool may_be_start = t.lo<slack, may_be_end = t.hi> length - slack;
+  const bool may_be_start = t.lo < slack || (may_be_behind && slope < 0);
+  const bool may_be_end = t.hi > length - slack || (may_be_behind && slope > 0);
   if (t.hi > -slack && t.lo < length + slack) {
-    Place inside{across - times(u, lean), s.radius_from + slope * t, identity, !may_be_start && !may_be_end};
-    const Span moves = times(u, 1 - slope * lean / foot_radius) + across * (2 * slope / foot_radius);
+    const Interval on_segment{-slack, length + slack}, leans = clamped(lean, on_segment - foot);
+    Place inside{across - times(u, leans), s.radius_from + slope * clamped(t, on_segment), identity,
+                 !may_be_start && !may_be_end};
+    const Span moves = times(u, 1 - slope * leans / foot_radius) + across * (2 * slope / foot_radius);
     const Interval wider = slope / inside.radius;
     for (std::size_t i = 0; i < 3; ++i) inside.turns[i] -= moves * (u[i] + wider * inside.to_point[i]);
     places.add(inside);
   }
-  if (may_be_start) places.add({from_start, s.radius_from, identity, true});
-  if (may_be_end) places.add({span_of(box, s.to), s.radius_to, identity, true});
+  if (may_be_start) places.add(start);
+  if (may_be_end) places.add(end);
   return true;
 }
 

@@ -18,16 +18,31 @@ namespace {
 constexpr double inf = Box3::inf;
 
 // How far the unit vector from the nearest point of the skeleton turns over rho: level surfaces of e are those of
-// convex bodies, flat, round or conical, and curve no more than a ball of the distance, over the cosine of the cone's
-// slope. Not known for arcs, whose nearest point may jump.
-double turn(const SegmentSkeleton& s, double distance, double rho) {
-  const double slope = (s.radius_to - s.radius_from) / length(s.to - s.from);
-  return 2 * rho / (distance - rho) / std::sqrt(std::max(0.0, 1 - slope * slope));
+// convex bodies, flat, round or conical. Seen from the apex of a cone of the slope k, at the angle theta from its axis,
+// k e = sin theta and the distance is tan theta times that from the apex, so that the vector turns by tan theta over
+// the distance at most. From k e = 1 on the larger end is nearest. Not known for arcs, whose nearest point may jump.
+double turn(const SegmentSkeleton& s, double distance, double rho, const Interval& e) {
+  const double slope = std::fabs(s.radius_to - s.radius_from) / length(s.to - s.from),
+               round = 2 * rho / (distance - rho);
+  if (slope * e.lo > 1) return round;
+  return slope * e.hi < 1 ? round / std::sqrt(1 - square(slope * e.hi)) : inf;
 }
-double turn(const TriangleSkeleton& s, double distance, double rho) {
+double turn(const TriangleSkeleton& s, double distance, double rho, const Interval&) {
   return s.radii[0] == s.radii[1] && s.radii[1] == s.radii[2] ? 2 * rho / (distance - rho) : inf;
 }
-double turn(const ArcSkeleton&, double, double) { return inf; }
+double turn(const ArcSkeleton&, double, double, const Interval&) { return inf; }
+
+// The scaled distance e in the ball, from some places of the skeleton.
+Interval scaled_distance(const SegmentSkeleton& s, const SumBounds& sum, double distance) {
+  const Vec3d& p = sum.center();
+  const double size = length(s.to - s.from);
+  const double foot = size > 0 ? std::clamp(dot(p - s.from, s.to - s.from) / (size * size), 0.0, 1.0) : 0;
+  const double over_foot = distance / (s.radius_from + (s.radius_to - s.radius_from) * foot);
+  const double nearest = std::min({over_foot, length(p - s.from) / s.radius_from, length(p - s.to) / s.radius_to});
+  return {std::max(0.0, (distance - sum.rho()) / largest_radius(s)) * (1 - 1e-9),
+          (nearest + sum.rho() / least_radius(s)) * (1 + 1e-9)};
+}
+Interval scaled_distance(const auto&, const SumBounds&, double) { return {0, inf}; }
 
 // |k'| where the scaled distance is off by `moved` at most from where the field is f: it rises to the steepest place of
 // the kernel and falls from there on. The compact kernel has none beyond its support, where only f = 0 is known.
@@ -55,7 +70,13 @@ template <class Skeleton>
 SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, const Kernel& kernel) {
   const SkeletonSample sample = distance_field<Derivatives::ScaleInvariant>(s, sum.center(), kernel);
   const double f = sample.value, moved = sum.rho() / least_radius(s), distance = distance_to(s, sum.center());
-  const double turned = distance > sum.rho() ? turn(s, distance, sum.rho()) : inf;
+  Interval scaled = scaled_distance(s, sum, distance);
+  const int degree = kernel.family == KernelFamily::Inverse ? kernel.degree : 0;
+  if (degree > 0 && f > 0 && std::isfinite(f)) {
+    const double e = pow(f, -1.0 / (degree - 1));
+    scaled = clamped(scaled, {std::max(0.0, e - moved) * (1 - 1e-9), (e + moved) * (1 + 1e-9)});
+  }
+  const double turned = distance > sum.rho() ? turn(s, distance, sum.rho(), scaled) : inf;
   // S between its least and largest length, turned by as much.
   const auto give_S = [&](SumBounds::Between& b, double S_low, double S_high) {
     b.S_by = S_high;
