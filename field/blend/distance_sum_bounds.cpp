@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "field/blend/steepest_slope.h"
 #include "field/blend/sum_bounds.h"
@@ -149,19 +151,34 @@ struct Largest {
 
 }  // namespace
 
+// Of a strand only what may be the largest counts.
+void SumBounds::keep_strand(const BlendField& blend, std::size_t first, std::span<const Between> strand) {
+  const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+  double largest = 0;
+  for (const Between& b : strand) largest = std::max(largest, b.f.lo);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < strand.size(); ++i) {
+    const bool counts = !(strand[i].f.hi < largest);
+    count += counts;
+    keep(counts ? distance_part(blend.distance_segments.skeletons[first + i], strand[i], *this, kernel)
+                : Part{.steepest = 0, .bent = 0});
+  }
+  may_jump_ = may_jump_ || count > 1;
+}
+
 void SumBounds::add_distances(const BlendField& blend) {
   const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
   const auto& list = blend.distance_segments;
-  for (std::size_t i = 0; i < list.size();) {
-    const auto bounds_of = [&](std::size_t k) {
-      const Between bounds = distance_bounds(list.skeletons[k], *this, kernel);
-      if (keeps_parts_) keep(distance_part(list.skeletons[k], bounds, *this, kernel));
-      return bounds;
-    };
-    Largest all(bounds_of(i), i);
-    const std::size_t first = i++;
-    for (; !list.strands.empty() && i < list.size() && list.strands[i] == list.strands[first]; ++i)
-      all.add(bounds_of(i), i);
+  std::vector<Between> strand;
+  for (std::size_t first = 0; first < list.size(); first += strand.size()) {
+    strand = {distance_bounds(list.skeletons[first], *this, kernel)};
+    Largest all(strand.front(), first);
+    for (std::size_t i = first + 1; !list.strands.empty() && i < list.size() && list.strands[i] == list.strands[first];
+         ++i) {
+      strand.push_back(distance_bounds(list.skeletons[i], *this, kernel));
+      all.add(strand.back(), i);
+    }
+    if (keeps_parts_) keep_strand(blend, first, strand);
     if (has_slopes()) all.bounds.slopes = all.slopes(list.skeletons, box_, kernel);
     add(all.bounds);
   }

@@ -24,14 +24,6 @@ bool are_integrals(const BlendField& blend) {
          blend.cani_hornus_segments.empty();
 }
 
-// Where one segment of a strand by distance takes over from another, with its angle and direction, both jump. So may
-// the nearest place of an arc.
-bool may_jump(const BlendField& blend) {
-  const auto& strands = blend.distance_segments.strands;
-  const bool is_arc = !blend.direction_bounds.empty() && !blend.distance_arcs.empty();
-  return is_arc || std::adjacent_find(strands.begin(), strands.end()) != strands.end();
-}
-
 // Where the angle of a skeleton is taken at one place of it and that may jump, or move at any speed.
 bool may_turn_fast(const BlendField& blend) {
   const auto varies = [](const auto& list) {
@@ -39,7 +31,9 @@ bool may_turn_fast(const BlendField& blend) {
       if (list.angle_varies(i)) return true;
     return false;
   };
-  return varies(blend.distance_triangles) || varies(blend.distance_arcs);
+  // So may the direction of an arc.
+  const bool is_by_arcs = !blend.direction_bounds.empty() && !blend.distance_arcs.empty();
+  return is_by_arcs || varies(blend.distance_triangles) || varies(blend.distance_arcs);
 }
 
 AlphaSample middle_angle(const BlendField& blend, const SumBounds& sum) {
@@ -184,7 +178,7 @@ std::optional<AngleBounds> by_directions(const BlendField& blend, const SumBound
 
 std::optional<AngleBounds> mean_angles(const BlendField& blend, const SumBounds& sum) {
   const Interval f = sum.f();
-  if (sum.unbounded() || may_jump(blend) || may_turn_fast(blend)) return {};
+  if (sum.unbounded() || sum.may_jump() || may_turn_fast(blend)) return {};
   if (!(f.lo > vanishing && f.hi < 0.9 * field_ceiling)) return {};
   return blend.alpha_per_skeleton ? by_skeletons(blend, sum) : by_directions(blend, sum);
 }

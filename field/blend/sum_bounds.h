@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "field/blend/blend_field.h"
@@ -70,6 +71,8 @@ class SumBounds {
   };
   /// All primitives of a blend whose angle is a mean over its skeletons or strands, in the order of visit_parts().
   const std::vector<Part>& parts() const { return parts_; }
+  /// Whether, in a strand by distance, one segment may take over from another, with its angle and its direction.
+  bool may_jump() const { return may_jump_; }
 
   const Vec3d& center() const { return center_; }
   /// Half the diagonal of the box.
@@ -103,6 +106,7 @@ class SumBounds {
   void add_cauchy(const BlendField&);
   void add_compact(const BlendField&);
   void add_distances(const BlendField&);
+  void keep_strand(const BlendField&, std::size_t first, std::span<const Between>);
 
   Box3 box_;
   std::optional<Stretch> stretch_;
@@ -113,7 +117,7 @@ class SumBounds {
   Vec3d gradient_{}, S_{};
   Matrix3 J_{};
   PrimitiveSlopes between_{};
-  bool unbounded_ = false, has_slopes_ = true, keeps_parts_ = false;
+  bool unbounded_ = false, has_slopes_ = true, keeps_parts_ = false, may_jump_ = false;
   std::vector<Part> parts_;
 };
 
