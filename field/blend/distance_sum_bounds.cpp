@@ -34,35 +34,36 @@ double turn(const TriangleSkeleton& s, double distance, double rho, const Interv
 }
 double turn(const ArcSkeleton&, double, double, const Interval&) { return inf; }
 
-// The scaled distance e in the ball, from some places of the skeleton.
-Interval scaled_distance(const SegmentSkeleton& s, const SumBounds& sum, double distance) {
-  const Vec3d& p = sum.center();
-  const double size = length(s.to - s.from);
-  const double foot = size > 0 ? std::clamp(dot(p - s.from, s.to - s.from) / (size * size), 0.0, 1.0) : 0;
-  const double over_foot = distance / (s.radius_from + (s.radius_to - s.radius_from) * foot);
-  const double nearest = std::min({over_foot, length(p - s.from) / s.radius_from, length(p - s.to) / s.radius_to});
-  return {std::max(0.0, (distance - sum.rho()) / largest_radius(s)) * (1 - 1e-9),
-          (nearest + sum.rho() / least_radius(s)) * (1 + 1e-9)};
-}
-Interval scaled_distance(const auto&, const SumBounds&, double) { return {0, inf}; }
-
-// |k'| where the scaled distance is off by `moved` at most from where the field is f: it rises to the steepest place of
-// the kernel and falls from there on. The compact kernel has none beyond its support, where only f = 0 is known.
-Interval steepness_near(const Profile& profile, const Kernel& kernel, double f, double moved) {
+// The scaled distance e where it is off by `moved` at most from where the field is f. The compact kernel tells of it
+// within its support only.
+Interval scaled_near(const Kernel& kernel, double f, double moved) {
+  if (kernel.family == KernelFamily::Inverse) {
+    const double e = std::isfinite(f) ? pow(f, -1.0 / (kernel.degree - 1)) : 0, by = moved + 1e-10 * e;
+    return {e - by, e + by};
+  }
+  const Profile profile(kernel, 0);
   const int m = profile.degree();
   const bool is_compact = kernel.family == KernelFamily::Compact;
   const double size = is_compact ? kernel.shape : 1 / kernel.shape;
-  // (x / size)^2 from k; a relative 1e-9 of it or of 1 stands for the error of the sample.
+  // (e / size)^2 from k; a relative 1e-9 of it or of 1 stands for the error of the sample.
   const double ratio = std::min(1.0, f * profile.normalisation());
   const double y = is_compact ? 1 - pow(ratio, 2.0 / m) : ratio > 0 ? pow(ratio, -2.0 / m) - 1 : inf;
-  const double near = std::max(0.0, size * std::sqrt(std::max(0.0, y - 1e-9 * (1 + y))) - moved);
-  const double far = f > 0 ? size * std::sqrt(y + 1e-9 * (1 + y)) + moved : inf;
+  return {std::max(0.0, size * std::sqrt(std::max(0.0, y - 1e-9 * (1 + y))) - moved),
+          f > 0 ? size * std::sqrt(y + 1e-9 * (1 + y)) + moved : inf};
+}
+
+// |k'| between two scaled distances: it rises to the steepest place of the kernel and falls from there on, to 0 at the
+// edge of a support.
+Interval steepness_between(const Profile& profile, const Kernel& kernel, const Interval& e) {
+  const int m = profile.degree();
+  const bool is_compact = kernel.family == KernelFamily::Compact;
+  const double size = is_compact ? kernel.shape : 1 / kernel.shape;
   const auto slope = [&](double x) {
     if (!(is_compact ? x < size : x < inf)) return 0.0;
     return std::fabs(2 * x * profile.at(x * x).slope) / profile.normalisation();
   };
-  const double top = size / std::sqrt(is_compact ? m - 1.0 : m + 1.0), a = slope(near), b = slope(far);
-  const bool has_top = near * (1 - 1e-9) <= top && top <= far * (1 + 1e-9);
+  const double top = size / std::sqrt(is_compact ? m - 1.0 : m + 1.0), a = slope(e.lo), b = slope(e.hi);
+  const bool has_top = e.lo * (1 - 1e-9) <= top && top <= e.hi * (1 + 1e-9);
   const double most = has_top ? steepest(profile, kernel) : std::max(a, b);
   return {std::min(a, b) * (1 - 1e-9), most * (1 + 1e-9)};
 }
@@ -72,13 +73,8 @@ template <class Skeleton>
 SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, const Kernel& kernel) {
   const SkeletonSample sample = distance_field<Derivatives::ScaleInvariant>(s, sum.center(), kernel);
   const double f = sample.value, moved = sum.rho() / least_radius(s), distance = distance_to(s, sum.center());
-  Interval scaled = scaled_distance(s, sum, distance);
-  const int degree = kernel.family == KernelFamily::Inverse ? kernel.degree : 0;
-  if (degree > 0 && f > 0 && std::isfinite(f)) {
-    const double e = pow(f, -1.0 / (degree - 1));
-    scaled = clamped(scaled, {std::max(0.0, e - moved) * (1 - 1e-9), (e + moved) * (1 + 1e-9)});
-  }
-  const double turned = distance > sum.rho() ? turn(s, distance, sum.rho(), scaled) : inf;
+  const Interval e = scaled_near(kernel, f, moved);
+  const double turned = distance > sum.rho() ? turn(s, distance, sum.rho(), e) : inf;
   // S between its least and largest length, turned by as much.
   const auto give_S = [&](SumBounds::Between& b, double S_low, double S_high) {
     b.S_by = S_high;
@@ -91,13 +87,12 @@ SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, cons
     const double steep = steepest(profile, kernel) * (1 + 1e-9), by = steep * moved + 1e-10 * f;
     SumBounds::Between b{.f = {std::max(0.0, f - by), f + by},
                          .log_slope = f > by ? steep / (least_radius(s) * (f - by)) : inf};
-    const Interval lengths = steepness_near(profile, kernel, f, moved);
+    const Interval lengths = steepness_between(profile, kernel, e);
     give_S(b, lengths.lo, lengths.hi);
     return b;
   }
   const int n = kernel.degree;
-  const double e = std::isfinite(f) ? pow(f, -1.0 / (n - 1)) : 0, by = moved + 1e-10 * e;
-  const double near = e - by, far = e + by;
+  const auto [near, far] = e;
   if (!(near > 0)) return {.f = {(1 - 1e-10) / integer_power(far, n - 1), inf}, .S_by = inf, .log_slope = inf};
   const double S_high = (n - 1) * (1 + 1e-10) / integer_power(near, n);
   SumBounds::Between b{.f = {(1 - 1e-10) / integer_power(far, n - 1), (1 + 1e-10) / integer_power(near, n - 1)},
@@ -111,10 +106,12 @@ SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, cons
 template <class Skeleton>
 SumBounds::Part distance_part(const Skeleton& s, const SumBounds::Between& b, const SumBounds& sum,
                               const Kernel& kernel) {
-  const double longest = length(b.S) + b.S_by;
-  return {.sample = distance_field<Derivatives::First>(s, sum.center(), kernel),
+  const double longest = length(b.S) + b.S_by, least = least_radius(s);
+  const SkeletonSample sample = distance_field<Derivatives::First>(s, sum.center(), kernel);
+  return {.sample = sample,
           .f = b.f,
-          .steepest = longest / least_radius(s) * (1 + 1e-9)};
+          .steepest = longest / least * (1 + 1e-9),
+          .scaled = scaled_near(kernel, sample.value, sum.rho() / least)};
 }
 
 // The skeletons of one strand of which the largest field counts; where several may be that, S is one of theirs.

@@ -9,8 +9,6 @@
 #include "field/blend/gather.h"
 #include "field/blend/primitive_visit.h"
 #include "field/blend/strand_angles.h"
-#include "field/skeleton/distance.h"
-#include "field/skeleton/radii.h"
 #include "field/skeleton/shares.h"
 
 namespace marrow {
@@ -82,14 +80,13 @@ Interval angles_along(const auto& list, std::size_t i) {
 
 // How fast the place moves that has all of the field, as a share of the segment: the foot of p, or, where by distance a
 // cone has the apex O and the slope k, the place Q of the axis for which p O is square to p Q. With e = |p - Q| /
-// radius, its distance from O is |p - O| / sqrt(1 - k^2 e^2), and moves by no more than 1 / (1 - k^2 e^2).
-double place_slope(const SegmentSkeleton& s, bool by_distance, const SumBounds& sum) {
-  const double size = length(s.to - s.from), k = (s.radius_to - s.radius_from) / size;
+// radius, its distance from O is |p - O| / sqrt(1 - k^2 e^2), and moves by no more than 1 / (1 - k^2 e^2). From
+// k e = 1 on it is the larger end.
+double place_slope(const SegmentSkeleton& s, bool by_distance, const Interval& e) {
+  const double size = length(s.to - s.from), k = std::fabs(s.radius_to - s.radius_from) / size;
   if (!by_distance || k == 0) return 1 / size;
-  const double foot = std::clamp(dot(sum.center() - s.from, s.to - s.from) / (size * size), 0.0, 1.0);
-  const double radius = s.radius_from + (s.radius_to - s.radius_from) * foot;
-  const double e = distance_to(s, sum.center()) / radius + sum.rho() / least_radius(s), open = 1 - k * k * e * e;
-  return open > 0 ? (1 + middle_is_off) / (size * open) : Box3::inf;
+  if (k * e.lo > 1) return 0;
+  return k * e.hi < 1 ? (1 + middle_is_off) / (size * (1 - k * k * e.hi * e.hi)) : Box3::inf;
 }
 
 // A primitive as a term of alpha = sum f_i a_i / sum f_i: a_i may be a mean over the skeleton, or the angle at one
@@ -106,7 +103,7 @@ MeanTerm angle_term(const BlendField& blend, const PrimitiveList<Skeleton>& list
   if (width == 0) return weight.term(common, sum.rho());
   if constexpr (std::same_as<Skeleton, SegmentSkeleton>)
     if (&list != &blend.segments) {
-      const double slope = width * place_slope(list.skeletons[i], &list == &blend.distance_segments, sum);
+      const double slope = width * place_slope(list.skeletons[i], &list == &blend.distance_segments, part.scaled);
       return with_values(weight.term(common, sum.rho()), {slope, Box3::inf});
     }
   if (!weight.log) return term_of_all(part);

@@ -68,6 +68,7 @@ class SumBounds {
     double steepest = Box3::inf, bent = Box3::inf;  ///< of |grad f| and |D^2 f| at most
     double distance = 0;  ///< above 0: of a sum of w |p - q|^-m with all q so far away, perhaps in four dimensions
     int m = 1;
+    Interval scaled{0, Box3::inf};  ///< least distance over the radius there, of primitives by distance
   };
   /// All primitives of a blend whose angle is a mean over its skeletons or strands, in the order of visit_parts().
   const std::vector<Part>& parts() const { return parts_; }

@@ -166,10 +166,13 @@ BlendField blend_of_skeletons(Random& random) {
   for (int k = random.whole(1, 4); k > 0; --k) add(blend.segments, random.segment(), false);
   for (int k = random.whole(0, 2); k > 0; --k) add(blend.triangles, random.triangle(), true);
   for (int k = random.whole(0, 2); k > 0; --k) add(blend.arcs, random.arc(), false);
-  for (int k = random.whole(-2, 2); k > 0; --k) { add(blend.distance_segments, random.segment(), false); }
-  if (blend.kernel == KernelFamily::Inverse && blend.degree == 3 && random.between(0, 1) < 0.5) {
-    add(blend.cani_hornus_segments, random.segment(), false);
+  for (int k = random.whole(-2, 2); k > 0; --k) {
+    SegmentSkeleton s = random.segment();
+    if (random.between(0, 1) < 0.3) s.to = lerp(s.from, s.to, 0.1);  // a steep cone
+    add(blend.distance_segments, s, false);
   }
+  if (blend.kernel == KernelFamily::Inverse && blend.degree == 3 && random.between(0, 1) < 0.5)
+    add(blend.cani_hornus_segments, random.segment(), false);
   if (random.between(0, 1) < 0.5) {
     blend.points.add(random.point(), {});
     blend.points.alphas.push_back(random.between(0, 1.5));
