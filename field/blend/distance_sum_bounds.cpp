@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "field/blend/steepest_slope.h"
@@ -153,14 +154,16 @@ void SumBounds::keep_strand(const BlendField& blend, std::size_t first, std::spa
   const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
   double largest = 0;
   for (const Between& b : strand) largest = std::max(largest, b.f.lo);
-  std::size_t count = 0;
+  std::vector<std::size_t> candidates;
   for (std::size_t i = 0; i < strand.size(); ++i) {
-    const bool counts = !(strand[i].f.hi < largest);
-    count += counts;
-    keep(counts ? distance_part(blend.distance_segments.skeletons[first + i], strand[i], *this, kernel)
-                : Part{.steepest = 0, .bent = 0});
+    if (strand[i].f.hi < largest) {
+      keep({.steepest = 0, .bent = 0});
+      continue;
+    }
+    candidates.push_back(parts_.size());
+    keep(distance_part(blend.distance_segments.skeletons[first + i], strand[i], *this, kernel));
   }
-  may_jump_ = may_jump_ || count > 1;
+  if (candidates.size() > 1) takeovers_.push_back(std::move(candidates));
 }
 
 void SumBounds::add_distances(const BlendField& blend) {

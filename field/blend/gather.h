@@ -19,8 +19,8 @@ struct Gathered {
 /// What the rule of local contact is told at p, with no gradients. Nothing where the sum is 0 or infinite.
 std::optional<Neighbourhood> neighbourhood_at(const BlendField&, const Vec3d& p);
 
-/// The angle of a blend that has `alpha_per_skeleton` or `direction_bounds`, from the samples of its parts at p. Of a
-/// strand by distance with several segments all of them would count.
+/// The angle of a blend that has `alpha_per_skeleton` or `direction_bounds`, from the samples of its parts at p. All
+/// segments of a strand by distance count that have a sample.
 AlphaSample alpha_of(const BlendField&, const Vec3d& p, const std::vector<SumBounds::Part>&);
 
 template <Derivatives>

@@ -17,10 +17,7 @@ namespace {
 // What counts is farther than this from where doubles end, so that what is 0 in doubles does not.
 constexpr double vanishing = 1e-100;
 
-bool are_integrals(const BlendField& blend) {
-  return blend.distance_segments.empty() && blend.distance_triangles.empty() && blend.distance_arcs.empty() &&
-         blend.cani_hornus_segments.empty();
-}
+using Parts = std::vector<SumBounds::Part>;
 
 // Where the angle of a skeleton is taken at one place of it and that may jump, or move at any speed.
 bool may_turn_fast(const BlendField& blend) {
@@ -32,10 +29,6 @@ bool may_turn_fast(const BlendField& blend) {
   // So may the direction of an arc.
   const bool is_by_arcs = !blend.direction_bounds.empty() && !blend.distance_arcs.empty();
   return is_by_arcs || varies(blend.distance_triangles) || varies(blend.distance_arcs);
-}
-
-AlphaSample middle_angle(const BlendField& blend, const SumBounds& sum) {
-  return are_integrals(blend) ? alpha_of(blend, sum.center(), sum.parts()) : alpha_at(blend, sum.center());
 }
 
 // From the middle to anywhere in the box, or on the stretch.
@@ -60,7 +53,7 @@ AngleBounds around(const AlphaSample& middle, const MeanChange& change, const In
 }
 
 // Of ln f in the middle; 0 where not all weights are known by their logarithms.
-Vec3d common_slope(const std::vector<SumBounds::Part>& parts) {
+Vec3d common_slope(const Parts& parts) {
   Vec3d slope{};
   double f = 0;
   for (const SumBounds::Part& part : parts) {
@@ -110,13 +103,13 @@ MeanTerm angle_term(const BlendField& blend, const PrimitiveList<Skeleton>& list
   return with_values(weight.term(common, sum.rho()), mean_within(part, width, sum.rho()));
 }
 
-AngleBounds by_skeletons(const BlendField& blend, const SumBounds& sum) {
-  const AlphaSample middle = middle_angle(blend, sum);
-  const Vec3d common = common_slope(sum.parts());
+AngleBounds by_skeletons(const BlendField& blend, const SumBounds& sum, const Parts& parts) {
+  const AlphaSample middle = alpha_of(blend, sum.center(), parts);
+  const Vec3d common = common_slope(parts);
   std::vector<MeanTerm> terms;
-  terms.reserve(sum.parts().size());
+  terms.reserve(parts.size());
   Interval range(middle.value);
-  visit_parts(blend, sum.parts(), [&](const SumBounds::Part& part, const auto& list, std::size_t i) {
+  visit_parts(blend, parts, [&](const SumBounds::Part& part, const auto& list, std::size_t i) {
     const FieldWeight weight = weight_of(part, sum.rho());
     if (!weight.log && weight.f.hi == 0) return;
     const Interval angles = angles_along(list, i);
@@ -149,9 +142,9 @@ Interval direction_range(const BlendField& blend) {
   return all;
 }
 
-std::optional<AngleBounds> by_directions(const BlendField& blend, const SumBounds& sum) {
+std::optional<AngleBounds> by_directions(const BlendField& blend, const SumBounds& sum, const Parts& parts) {
   std::vector<StrandTerms> strands(blend.direction_bounds.size(), StrandTerms(sum.rho()));
-  visit_parts(blend, sum.parts(), [&](const SumBounds::Part& part, const auto& list, std::size_t i) {
+  visit_parts(blend, parts, [&](const SumBounds::Part& part, const auto& list, std::size_t i) {
     strands[list.strands[i]].add(part, direction_of(blend, list.skeletons[i], part, sum.center()));
   });
   std::vector<StrandBounds> ordered;
@@ -164,20 +157,49 @@ std::optional<AngleBounds> by_directions(const BlendField& blend, const SumBound
   std::stable_sort(ordered.begin(), ordered.end(),
                    [](const StrandBounds& a, const StrandBounds& b) { return a.weight.value > b.weight.value; });
   const Interval range = direction_range(blend);
-  const AlphaSample middle = middle_angle(blend, sum);
+  const AlphaSample middle = alpha_of(blend, sum.center(), parts);
   // Of one strand alone the angle is that of parallel ones, everywhere; which of several is alone may change.
   if (ordered.size() == 1) return around({.value = middle.value}, {}, range, sum);
   if (ordered.empty() || !(ordered[1].weight.value > vanishing * total)) return {};
   return around(middle, angle_change(ordered, middle.value, range.width(), sum.rho()), range, sum);
 }
 
+std::optional<AngleBounds> of_parts(const BlendField& blend, const SumBounds& sum, const Parts& parts) {
+  return blend.alpha_per_skeleton ? by_skeletons(blend, sum, parts) : by_directions(blend, sum, parts);
+}
+
+// The hull over all choices of which segment is the largest of each strand, of which `strand` is the first that has not
+// been decided. `left` choices may still be tried.
+bool add_choices(const BlendField& blend, const SumBounds& sum, std::size_t strand, const Parts& parts, int& left,
+                 std::optional<AngleBounds>& all) {
+  if (strand == sum.takeovers().size()) {
+    const auto bounds = left-- > 0 ? of_parts(blend, sum, parts) : std::nullopt;
+    if (!bounds) return false;
+    if (!all) all = bounds;
+    all->value = hull(all->value, bounds->value);
+    return true;
+  }
+  const auto& candidates = sum.takeovers()[strand];
+  return std::ranges::all_of(candidates, [&](std::size_t largest) {
+    Parts chosen = parts;
+    for (const std::size_t other : candidates)
+      if (other != largest) chosen[other] = {.steepest = 0, .bent = 0};
+    return add_choices(blend, sum, strand + 1, chosen, left, all);
+  });
+}
+
 }  // namespace
 
 std::optional<AngleBounds> mean_angles(const BlendField& blend, const SumBounds& sum) {
   const Interval f = sum.f();
-  if (sum.unbounded() || sum.may_jump() || may_turn_fast(blend)) return {};
+  if (sum.unbounded() || may_turn_fast(blend)) return {};
   if (!(f.lo > vanishing && f.hi < 0.9 * field_ceiling)) return {};
-  return blend.alpha_per_skeleton ? by_skeletons(blend, sum) : by_directions(blend, sum);
+  if (sum.takeovers().empty()) return of_parts(blend, sum, sum.parts());
+  int most_choices = 8;
+  std::optional<AngleBounds> all;
+  if (!add_choices(blend, sum, 0, sum.parts(), most_choices, all)) return {};
+  all->gradient = {Interval::everything(), Interval::everything(), Interval::everything()};
+  return all;
 }
 
 }  // namespace marrow

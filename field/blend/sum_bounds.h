@@ -72,8 +72,9 @@ class SumBounds {
   };
   /// All primitives of a blend whose angle is a mean over its skeletons or strands, in the order of visit_parts().
   const std::vector<Part>& parts() const { return parts_; }
-  /// Whether, in a strand by distance, one segment may take over from another, with its angle and its direction.
-  bool may_jump() const { return may_jump_; }
+  /// The parts of each strand by distance of which more than one segment may be the largest: where one takes over from
+  /// another, angles and directions jump.
+  const std::vector<std::vector<std::size_t>>& takeovers() const { return takeovers_; }
 
   const Vec3d& center() const { return center_; }
   /// Half the diagonal of the box.
@@ -118,8 +119,9 @@ class SumBounds {
   Vec3d gradient_{}, S_{};
   Matrix3 J_{};
   PrimitiveSlopes between_{};
-  bool unbounded_ = false, has_slopes_ = true, keeps_parts_ = false, may_jump_ = false;
+  bool unbounded_ = false, has_slopes_ = true, keeps_parts_ = false;
   std::vector<Part> parts_;
+  std::vector<std::vector<std::size_t>> takeovers_;
 };
 
 }  // namespace marrow
