@@ -11,22 +11,6 @@
 namespace marrow {
 namespace {
 
-Interval skeleton_angles(const BlendField& blend) {
-  Interval all(blend.alpha);
-  blend.for_each_list([&](const auto& list) {
-    for (const auto* angles : {&list.alphas, &list.alphas_to, &list.alphas_third})
-      for (const double a : *angles) all = hull(all, a);
-  });
-  return all;
-}
-
-Interval direction_angles(const BlendField& blend) {
-  Interval all(blend.alpha);
-  for (const DirectionBounds& b : blend.direction_bounds)
-    all = hull(all, {std::min(b.least, b.most), std::max(b.least, b.most)});
-  return all;
-}
-
 // Under the distance model one segment of a strand takes over from another, with its angle, direction and radius.
 bool may_jump(const BlendField& blend) {
   const auto& strands = blend.distance_segments.strands;
@@ -89,8 +73,7 @@ AngleBounds alpha_bounds(const BlendField& blend, const SumBounds& sum, const Bo
   if (blend.alpha_source)
     return {clamped(blend.alpha_source->bounds(box), {-1, std::numbers::pi / 2}), blend.alpha_source->slopes(box)};
   if (blend.local_contact) return local_contact_angles(blend, sum);
-  if (const auto mean = mean_angles(blend, sum)) return *mean;
-  return {blend.alpha_per_skeleton ? skeleton_angles(blend) : direction_angles(blend), unknown_slope};
+  return mean_angles(blend, sum);
 }
 
 }  // namespace marrow

@@ -86,13 +86,12 @@ struct Others {
   }
 };
 
-AlphaSample over_pairs(std::span<const Strand> strands, const std::vector<Hair>& hairs) {
+AlphaSample over_pairs(std::span<const Strand> strands, const std::vector<Hair>& hairs, bool with_gradient) {
   std::vector<Others> others(hairs.size());
   double numerator = 0, denominator = 0;
   for (std::size_t i = 0; i < hairs.size(); ++i) {
-    const double before = others[i].angles, field_before = others[i].field;
-    numerator += hairs[i].f * before;
-    denominator += 2 * hairs[i].f * field_before;
+    numerator += hairs[i].f * others[i].angles;
+    denominator += 2 * hairs[i].f * others[i].field;
     for (std::size_t j = i + 1; j < hairs.size(); ++j) {
       const double span = 0.5 * (hairs[i].span + hairs[j].span), cosine = dot(hairs[i].u, hairs[j].u);
       const double seventh = span * integer_power(cosine, 7);
@@ -102,6 +101,7 @@ AlphaSample over_pairs(std::span<const Strand> strands, const std::vector<Hair>&
     }
   }
   if (!(denominator > 0)) return mean_of_most(strands);
+  if (!with_gradient) return {.value = numerator / denominator};
   Slopes slopes;
   for (std::size_t i = 0; i < hairs.size(); ++i)
     slopes.add(hairs[i], strands[i], others[i].angles, others[i].by_u, others[i].field);
@@ -135,10 +135,7 @@ AlphaSample directional_alpha(std::span<const Strand> strands, bool with_gradien
   std::vector<Hair> hairs;
   hairs.reserve(strands.size());
   for (const Strand& s : strands) hairs.push_back(hair_of(s));
-  if (hairs.size() > few) return by_tensors(strands, hairs, with_gradient);
-  AlphaSample alpha = over_pairs(strands, hairs);
-  if (!with_gradient) alpha.gradient = {};
-  return alpha;
+  return hairs.size() > few ? by_tensors(strands, hairs, with_gradient) : over_pairs(strands, hairs, with_gradient);
 }
 
 // One sweep: derivatives come with the numbers.

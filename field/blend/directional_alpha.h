@@ -32,8 +32,8 @@ struct Strand {
 /// (a strand without one crosses all others).   [Zanni et al. 2015, eq. 15 and 16; field-maths 7]
 /// Where the denominator is 0 (one strand, or the others too far): the mean of `most`, weighted by f_i, without
 /// gradient; there C hardly depends on alpha. Nothing for no field at all.
-/// In a time linear in the number of strands: (u . v)^8 is a product of symmetric tensors with 45 components; sums run
-/// over the strands before, so that nothing cancels (error 1e-15).
+/// Up to 64 strands are taken pair by pair, more in a time linear in their number: (u . v)^8 is a product of symmetric
+/// tensors with 45 components; sums run over the strands before, so that nothing cancels (error 1e-15).
 AlphaSample directional_alpha(std::span<const Strand>, bool with_gradient);
 
 /// The same strands over numbers with second derivatives.

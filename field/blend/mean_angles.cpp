@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <optional>
 #include <vector>
 
 #include "field/blend/field_weight.h"
@@ -19,6 +20,8 @@ constexpr double vanishing = 1e-100;
 
 using Parts = std::vector<SumBounds::Part>;
 
+const Vec3<Interval> any_gradient{Interval::everything(), Interval::everything(), Interval::everything()};
+
 // Where the angle of a skeleton is taken at one place of it and that may jump, or move at any speed.
 bool may_turn_fast(const BlendField& blend) {
   const auto varies = [](const auto& list) {
@@ -34,7 +37,7 @@ bool may_turn_fast(const BlendField& blend) {
 // From the middle to anywhere in the box, or on the stretch.
 AngleBounds around(const AlphaSample& middle, const MeanChange& change, const Interval& range, const SumBounds& sum) {
   const double most = change.slope, rho = sum.rho(), off = middle_is_off * most;
-  AngleBounds bounds{range, {Interval::everything(), Interval::everything(), Interval::everything()}};
+  AngleBounds bounds{range, any_gradient};
   if (!(most < Box3::inf)) return bounds;
   const bool is_bend_known = change.bend < Box3::inf;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -142,6 +145,14 @@ Interval direction_range(const BlendField& blend) {
   return all;
 }
 
+Interval skeleton_range(const BlendField& blend) {
+  Interval all(blend.alpha);
+  blend.for_each_list([&](const auto& list) {
+    for (std::size_t i = 0; i < list.size(); ++i) all = hull(all, angles_along(list, i));
+  });
+  return all;
+}
+
 std::optional<AngleBounds> by_directions(const BlendField& blend, const SumBounds& sum, const Parts& parts) {
   std::vector<StrandTerms> strands(blend.direction_bounds.size(), StrandTerms(sum.rho()));
   visit_parts(blend, parts, [&](const SumBounds::Part& part, const auto& list, std::size_t i) {
@@ -169,11 +180,11 @@ std::optional<AngleBounds> of_parts(const BlendField& blend, const SumBounds& su
 }
 
 // The hull over all choices of which segment is the largest of each strand, of which `strand` is the first that has not
-// been decided. `left` choices may still be tried.
-bool add_choices(const BlendField& blend, const SumBounds& sum, std::size_t strand, const Parts& parts, int& left,
+// been decided.
+bool add_choices(const BlendField& blend, const SumBounds& sum, std::size_t strand, const Parts& parts,
                  std::optional<AngleBounds>& all) {
   if (strand == sum.takeovers().size()) {
-    const auto bounds = left-- > 0 ? of_parts(blend, sum, parts) : std::nullopt;
+    const auto bounds = of_parts(blend, sum, parts);
     if (!bounds) return false;
     if (!all) all = bounds;
     all->value = hull(all->value, bounds->value);
@@ -184,22 +195,34 @@ bool add_choices(const BlendField& blend, const SumBounds& sum, std::size_t stra
     Parts chosen = parts;
     for (const std::size_t other : candidates)
       if (other != largest) chosen[other] = {.steepest = 0, .bent = 0};
-    return add_choices(blend, sum, strand + 1, chosen, left, all);
+    return add_choices(blend, sum, strand + 1, chosen, all);
   });
+}
+
+std::optional<AngleBounds> of_choices(const BlendField& blend, const SumBounds& sum) {
+  constexpr std::size_t most_choices = 8;
+  std::size_t choices = 1;
+  for (const auto& candidates : sum.takeovers())
+    if ((choices *= candidates.size()) > most_choices) return {};
+  std::optional<AngleBounds> all;
+  if (!add_choices(blend, sum, 0, sum.parts(), all)) return {};
+  all->gradient = any_gradient;
+  return all;
+}
+
+std::optional<AngleBounds> known_angles(const BlendField& blend, const SumBounds& sum) {
+  const Interval f = sum.f();
+  if (sum.unbounded() || may_turn_fast(blend)) return {};
+  if (!(f.lo > vanishing && f.hi < 0.9 * field_ceiling)) return {};
+  return sum.takeovers().empty() ? of_parts(blend, sum, sum.parts()) : of_choices(blend, sum);
 }
 
 }  // namespace
 
-std::optional<AngleBounds> mean_angles(const BlendField& blend, const SumBounds& sum) {
-  const Interval f = sum.f();
-  if (sum.unbounded() || may_turn_fast(blend)) return {};
-  if (!(f.lo > vanishing && f.hi < 0.9 * field_ceiling)) return {};
-  if (sum.takeovers().empty()) return of_parts(blend, sum, sum.parts());
-  int most_choices = 8;
-  std::optional<AngleBounds> all;
-  if (!add_choices(blend, sum, 0, sum.parts(), most_choices, all)) return {};
-  all->gradient = {Interval::everything(), Interval::everything(), Interval::everything()};
-  return all;
+AngleBounds mean_angles(const BlendField& blend, const SumBounds& sum) {
+  if (const auto known = known_angles(blend, sum)) return *known;
+  const Interval range = blend.alpha_per_skeleton ? skeleton_range(blend) : direction_range(blend);
+  return {hull(range, blend.alpha), any_gradient};
 }
 
 }  // namespace marrow

@@ -63,7 +63,7 @@ class SumBounds {
 
   /// What is known of one primitive in the ball of `rho` around the middle.
   struct Part {
-    SkeletonSample sample{};  ///< with its gradient where `bent` or `distance` is known
+    SkeletonSample sample{};  ///< with its gradient; nothing where the skeleton may be met
     Interval f{};
     double steepest = Box3::inf, bent = Box3::inf;  ///< of |grad f| and |D^2 f| at most
     double distance = 0;  ///< above 0: of a sum of w |p - q|^-m with all q so far away, perhaps in four dimensions

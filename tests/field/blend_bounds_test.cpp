@@ -67,6 +67,22 @@ TEST(BlendBounds, HoldAtPointsOfTheBox) {
   EXPECT_GT(sloped, 5000);
 }
 
+// Fails where the value or a slope is not within its bounds; returns how many slopes have any.
+int check_place(const BlendBounds& bounds, const BlendSample& at, double slack_of_slopes) {
+  EXPECT_TRUE(bounds.value.contains(at.corrected))
+      << at.corrected << " not in [" << bounds.value.lo << ", " << bounds.value.hi << "]";
+  const double slack = slack_of_slopes * (1 + length(at.corrected_gradient));
+  int sloped = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Interval& g = bounds.gradient[axis];
+    const double slope = at.corrected_gradient[axis];
+    EXPECT_TRUE(g.lo - slack <= slope && slope <= g.hi + slack)
+        << "axis " << axis << ": " << slope << " not in [" << g.lo << ", " << g.hi << "]";
+    sloped += g.width() < 1e300;
+  }
+  return sloped;
+}
+
 // Kernels of finite heights, with the distance model and any angle.
 BlendField blend_of_finite_height(Random& random) {
   BlendField blend;
@@ -93,20 +109,8 @@ TEST(BlendBounds, HoldForKernelsOfFiniteHeight) {
     const Vec3d center = random.vector(2);
     const double half = pow(10, random.between(-5, -0.2));
     const BlendBounds bounds = blend_bounds(blend, Box3{center, center}.padded(half));
-    for (int k = 0; k < 8; ++k) {
-      const BlendSample s = evaluate(blend, center + random.vector(half));
-      ASSERT_TRUE(bounds.value.contains(s.corrected))
-          << "case " << i << " of half size " << half << ": " << s.corrected << " not in [" << bounds.value.lo << ", "
-          << bounds.value.hi << "], degree " << blend.degree;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Interval& g = bounds.gradient[axis];
-        const double slack = 1e-8 * (1 + length(s.corrected_gradient));
-        ASSERT_TRUE(g.lo - slack <= s.corrected_gradient[axis] && s.corrected_gradient[axis] <= g.hi + slack)
-            << "case " << i << " axis " << axis << " of half size " << half << ": " << s.corrected_gradient[axis]
-            << " not in [" << g.lo << ", " << g.hi << "], degree " << blend.degree;
-        sloped += g.hi - g.lo < 1e300;
-      }
-    }
+    for (int k = 0; k < 8; ++k) sloped += check_place(bounds, evaluate(blend, center + random.vector(half)), 1e-8);
+    ASSERT_FALSE(HasFailure()) << "case " << i << " of half size " << half << ", degree " << blend.degree;
   }
   EXPECT_GT(sloped, 5000);
 }
@@ -142,16 +146,9 @@ TEST(BlendBounds, HoldForSteepConesByDistance) {
     for (int k = 0; k < 8; ++k) {
       const BlendSample at = evaluate(blend, center + random.vector(half));
       if (at.sum > 1e50) continue;
-      ASSERT_TRUE(bounds.value.contains(at.corrected)) << "case " << i << " of half size " << half;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Interval& g = bounds.gradient[axis];
-        const double slack = 1e-8 * (1 + length(at.corrected_gradient));
-        ASSERT_TRUE(g.lo - slack <= at.corrected_gradient[axis] && at.corrected_gradient[axis] <= g.hi + slack)
-            << "case " << i << " axis " << axis << " of half size " << half << ": " << at.corrected_gradient[axis]
-            << " not in [" << g.lo << ", " << g.hi << "], degree " << blend.degree;
-        sloped += g.width() < 1e300;
-      }
+      sloped += check_place(bounds, at, 1e-8);
     }
+    ASSERT_FALSE(HasFailure()) << "case " << i << " of half size " << half << ", degree " << blend.degree;
   }
   std::cout << "  " << sloped << " slopes bounded, " << narrow << " of " << small << " small boxes narrow\n";
   EXPECT_GT(sloped, 60000);
@@ -180,17 +177,9 @@ TEST(BlendBounds, HoldForSegmentsOfCaniAndHornus) {
     for (int k = 0; k < 8; ++k) {
       const BlendSample b = evaluate(blend, center + random.vector(half));
       if (b.sum > 1e50) continue;
-      ASSERT_TRUE(bounds.value.contains(b.corrected))
-          << "case " << i << ": " << b.corrected << " not in [" << bounds.value.lo << ", " << bounds.value.hi << "]";
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Interval& g = bounds.gradient[axis];
-        const double slack = 1e-9 * (1 + length(b.corrected_gradient));
-        ASSERT_TRUE(g.lo - slack <= b.corrected_gradient[axis] && b.corrected_gradient[axis] <= g.hi + slack)
-            << "case " << i << " axis " << axis << ": " << b.corrected_gradient[axis] << " not in [" << g.lo << ", "
-            << g.hi << "]";
-        sloped += g.hi - g.lo < 1e300;
-      }
+      sloped += check_place(bounds, b, 1e-9);
     }
+    ASSERT_FALSE(HasFailure()) << "case " << i << " of half size " << half;
     // between its ends nothing jumps
     const BlendSample at = evaluate(blend, center);
     if (i % 2 == 0 || half > 1e-6 || !(at.corrected > 0.1 && at.corrected < 2)) continue;
