@@ -1,6 +1,8 @@
 // The tracer of general trees against dense sampling of the field along rays, over random trees of all kinds of nodes.
 #include "field/trace/general/tree_tracer.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <iostream>
@@ -153,6 +155,52 @@ TEST(TreeTracer, GoesThroughACommonFaceButNotAcrossAGap) {
         else EXPECT_GT(x, 2.3) << "away " << away << " range " << range;
       }
     }
+}
+
+struct BoxAndBall {
+  Affine turn;
+  TreeTracer tracer;
+};
+
+// A box whose faces lie aslant, so that sums there are 1 but for rounding, and a ball around a place of one of them.
+BoxAndBall box_and_ball(Random& random, const Vec3d& center, double radius) {
+  const Affine turn = Affine::rotate(normalize(random.vector(1)), random.between(0.2, 3));
+  FieldDescription field;
+  const FieldNodeId box = add(field, Box{.center = {}, .size = {2, 1, 1.5}, .potential = {}});
+  const FieldNodeId turned = field.add({.what = Transform{turn, box}, .where = {}});
+  const FieldNodeId ball = add(field, Sphere{.center = turn.point(center), .radius = radius, .potential = {}});
+  field.root = field.add({.what = Union{{turned, ball}}, .where = {}});
+  return {turn, tracer_of(field)};
+}
+
+// A ray that runs in a face inside another body meets a crossing by rounding at every other place: they are passed in
+// strides.
+TEST(TreeTracer, PassesAFaceThatItRunsInInsideAnotherBody) {
+  Random random(47);
+  const Vec3d center{0.1, 0.5, -0.1};
+  std::uint32_t evaluations = 0;
+  for (const double radius : {0.15, 0.3, 0.6}) {
+    for (int i = 0; i < 20; ++i) {
+      const auto [turn, tracer] = box_and_ball(random, center, radius);
+      const double angle = random.between(0, 6.3);
+      const UnitVec3 along = normalize(turn.vector({std::cos(angle), 0, std::sin(angle)}));
+      const CrossingSearch found = traced(tracer, {.origin = turn.point(center), .direction = along});
+      ASSERT_TRUE(found.t);
+      EXPECT_GT(*found.t, radius - 1e-6);
+      evaluations = std::max(evaluations, found.evaluations);
+    }
+  }
+  std::cout << "  at most " << evaluations << " evaluations\n";
+  EXPECT_LT(evaluations, 5'000u);
+}
+
+// Where a body is inside another one it has no cells.
+TEST(TreeTracer, HasNoCellsInsideAnotherBody) {
+  Random random(48);
+  const std::size_t of_ball = box_and_ball(random, {}, 3).tracer.cell_count();
+  const std::size_t apart = box_and_ball(random, {10, 0, 0}, 3).tracer.cell_count();
+  EXPECT_GT(of_ball, 0u);
+  EXPECT_LT(of_ball, apart);
 }
 
 // However many sizes away a ray begins, what it meets is as thin as where it stands tells.

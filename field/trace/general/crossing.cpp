@@ -100,7 +100,7 @@ class Search {
       allowed_ += more_evaluations;
       coarseness_ *= 16;
     }
-    if (length(piece) <= coarseness_ * gap(piece.end) || is_flat(f.value, piece)) {
+    if (length(piece) <= coarseness_ * gap(piece.end) || is_flat(f.value, piece, sums_are_off)) {
       give_up(piece);
       return;
     }
@@ -112,7 +112,11 @@ class Search {
     // The field moves from its value in the middle by no more than its slope allows: that clears the middle.
     const Interval center = enclosure_at(middle);
     if (center.contains(1)) {
-      split(piece, middle, middle, side(middle));
+      // As in a plane face that the ray runs in: rounding alone tells sides there, however short the piece.
+      constexpr double rounding_of_few = 0x1p-46;
+      const double half = 0.5 * length(piece) * (1 + 1e-12);
+      if (is_flat(center + slope * Interval(-half, half), piece, rounding_of_few)) give_up(piece);
+      else split(piece, middle, middle, side(middle));
       return;
     }
     const bool is_above = center.lo > 1;
@@ -134,8 +138,9 @@ class Search {
     if (piece.crosses()) found_.t = placed(piece);
   }
 
-  bool is_flat(const Interval& f, Piece& piece) {
-    if (!(1 - f.lo < sums_are_off && f.hi - 1 < sums_are_off)) return false;
+  // Within `off` of 1, with both ends on one side.
+  bool is_flat(const Interval& f, Piece& piece, double off) {
+    if (!(1 - f.lo < off && f.hi - 1 < off)) return false;
     learn_sides(piece);
     return !piece.crosses();
   }

@@ -19,6 +19,15 @@ constexpr int first_levels = 3;
 constexpr std::size_t few_members = 64;
 // Of so many members at most, all are asked at a crossing whether it is inside them: 2 us.
 constexpr std::size_t most_asked = 1024;
+// Bounds of members in cells are off by less than the one, sums by less than the other.
+constexpr double members_are_off = 1e-6, sums_are_off = 1e-10;
+
+Vec3<Interval> stretch_of(const Ray& ray, const Interval& t) {
+  const Vec3d& o = ray.origin;
+  const Vec3d& d = ray.direction;
+  return {Interval(o.x) + t * Interval(d.x), Interval(o.y) + t * Interval(d.y), Interval(o.z) + t * Interval(d.z)};
+}
+
 Vec3<Interval> span_of(const Box3& box) {
   return {{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
 }
@@ -52,9 +61,12 @@ Result<TreeTracer> TreeTracer::make(FieldTree tree) {
     if (!(is_finite(member.bounds.lower) && is_finite(member.bounds.upper)))
       return failure("the surface of this field has no end; intersect it with something bounded");
     made.bounds_.include(member.bounds);
-    if (member.is_leaf && all.size() > few_members)
-      made.cells_.push_back({trimmed(made.tree_, member), member.record, nullptr});
-    else made.divide(member);
+    if (!(member.is_leaf && all.size() > few_members)) {
+      made.divide(member);
+      continue;
+    }
+    const Box3 box = trimmed(made.tree_, member);
+    if (!made.is_inside_another(member.record, box)) made.cells_.push_back({box, member.record, nullptr});
   }
   return made;
 }
@@ -68,7 +80,7 @@ void TreeTracer::divide(const Member& member) {
     std::vector<const TreeCell*> next;
     for (const TreeCell* parent : level)
       for (const auto& octant : parent->octants()) {
-        if (!octant) continue;
+        if (!octant || is_inside_another(member.record, octant->box())) continue;
         if (octant->is_leaf() || depth == first_levels) cells_.push_back({octant->box(), member.record, octant.get()});
         else next.push_back(octant.get());
       }
@@ -130,6 +142,7 @@ std::optional<TreeHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, b
   const double nearly_ended = 0x1p-30 * std::max(std::fabs(t.hi), max_component(abs(ray.origin)));  // gaps are shorter
   if (any) t.hi = std::min(t.hi, ray.t_max + nearly_ended);
   Ray onward = ray;
+  double stride = t.hi - t.lo;
   while (t.lo <= t.hi) {
     // Any crossing is told by a place behind it: not what is_covered() asks for.
     CellSearch search(onward, any && members_.empty(), log);
@@ -140,24 +153,39 @@ std::optional<TreeHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, b
     if (any && !hit && log.undecided < Box3::inf) return first_hit(cell, ray, false, log);
     if (!hit || hit->t > ray.t_max) return {};
     if (members_.empty() || !(is_covered(c.member, ray, hit->t) || is_joint(c.member, ray, hit->t))) return hit;
-    onward.t_min = t.lo = std::max(hit->t, std::nextafter(t.lo, Box3::inf));
+    const double next = covered_until(c.member, ray, hit->t, stride);
+    onward.t_min = t.lo = std::max(next, std::nextafter(t.lo, Box3::inf));
   }
   return {};
+}
+
+// Whether no crossing in the box is on the surface.
+bool TreeTracer::is_inside_another(std::uint32_t member, const Box3& box) const {
+  return !members_.empty() && largest_of_others(member, span_of(box)).lo > 1 + members_are_off;
 }
 
 // Whether another member is all around a crossing. For a ray from outside it is so only behind a crossing of that
 // member: what is asked is the place before the crossing, by more than crossings are misplaced.
 bool TreeTracer::is_covered(std::uint32_t member, const Ray& ray, double t) const {
-  constexpr double sums_are_off = 1e-6;
   const double size = std::max(std::fabs(t), max_component(abs(ray.origin)));
   const Vec3d p = ray.at(std::max(ray.t_min, t - 64 * rounding::ulp * size));
-  return largest_of_others(member, p) > 1 + sums_are_off;
+  return largest_of_others(member, p) > 1 + members_are_off;
+}
+
+// How far behind a crossing that is passed bounds prove at once that others are passed too: where a ray runs along a
+// face inside another member, rounding makes one after the other. The next stride is longer or shorter, as that was so.
+double TreeTracer::covered_until(std::uint32_t member, const Ray& ray, double t, double& stride) const {
+  const double shortest = 0x1p-34 * std::max(std::fabs(t), max_component(abs(ray.origin)));
+  const Interval ahead(t, t + std::max(stride, shortest));
+  const bool proved = largest_of_others(member, stretch_of(ray, ahead)).lo > 1 + sums_are_off;
+  stride = proved ? 4 * (ahead.hi - t) : 0.25 * stride;
+  return proved ? ahead.hi : t;
 }
 
 // Whether the ray goes on from the member into another one, or the other way, through a common face: members are above
 // 1 before and behind, and bounds prove that between no more is outside than what sums and positions are off.
 bool TreeTracer::is_joint(std::uint32_t member, const Ray& ray, double t) const {
-  constexpr double least_reach = 1e-11, most_reach = 1e-8, rounding_of_sums = 1e-13, sums_are_off = 1e-10;
+  constexpr double least_reach = 1e-11, most_reach = 1e-8, rounding_of_sums = 1e-13;
   const double size = std::max(std::fabs(t), max_component(abs(ray.origin)));
   const auto largest_at = [&](const auto& p) { return max(value(tree_, p, member), largest_of_others(member, p)); };
   // Where fields are flat sums tell the side only farther away.
@@ -168,12 +196,7 @@ bool TreeTracer::is_joint(std::uint32_t member, const Ray& ray, double t) const 
     if (off < 0) return false;
     if (off > rounding_of_sums) break;
   }
-  const Vec3d& o = ray.origin;
-  const Vec3d& d = ray.direction;
-  const auto enclosure = [&](const Interval& along) {
-    return largest_at(Vec3<Interval>{Interval(o.x) + along * Interval(d.x), Interval(o.y) + along * Interval(d.y),
-                                     Interval(o.z) + along * Interval(d.z)});
-  };
+  const auto enclosure = [&](const Interval& along) { return largest_at(stretch_of(ray, along)); };
   const Interval here = enclosure(Interval(t));
   const double least = 1 - sums_are_off - 2 * (here.hi - here.lo), shortest = 4 * rounding::ulp * size;
   double from = t - by, step = 2 * by;

@@ -1,12 +1,13 @@
 // Certified ray tracing of a tree of general nodes.
 //
 // Each member of a crisp union is traced by itself: the nearest hit of all is that of the union, seen from outside; of
-// up to 1024 members, crossings inside another one are passed, so that it is from inside too. For each of them there is
-// an octree over the box that can hold its surface: parts that bounds prove to be all outside or all inside are
-// dropped, the others are divided, when rays come, until the surface in them is one sheet to all appearances. Each cell
-// keeps the tree restricted to it. Of a union of very many, a member without operators is one cell. Along a ray,
-// enclosures of the field and of its slope tell intervals without a root from those with exactly one; what remains is
-// divided around its middle.   [interval Newton isolation: Moore 1966; pruned programs: Keeter 2020]
+// up to 1024 members, crossings inside another one are passed, so that it is from inside too, and cells inside another
+// one are dropped. For each of them there is an octree over the box that can hold its surface: parts that bounds prove
+// to be all outside or all inside are dropped, the others are divided, when rays come, until the surface in them is one
+// sheet to all appearances. Each cell keeps the tree restricted to it. Of a union of very many, a member without
+// operators is one cell. Along a ray, enclosures of the field and of its slope tell intervals without a root from those
+// with exactly one; what remains is divided around its middle.   [interval Newton isolation: Moore 1966; pruned
+// programs: Keeter 2020]
 #pragma once
 
 #include <cstddef>
@@ -61,7 +62,9 @@ class TreeTracer {
   explicit TreeTracer(FieldTree tree) : tree_(std::move(tree)) {}
   void divide(const Member&);
   std::optional<Vec3d> outside_along(const Cell&, const Vec3d& position, const Vec3d& direction, double likely) const;
+  bool is_inside_another(std::uint32_t member, const Box3&) const;
   bool is_covered(std::uint32_t member, const Ray&, double t) const;
+  double covered_until(std::uint32_t member, const Ray&, double t, double& stride) const;
   bool is_joint(std::uint32_t member, const Ray&, double t) const;
   template <Number X>
   X largest_of_others(std::uint32_t member, const Vec3<X>& p) const;
