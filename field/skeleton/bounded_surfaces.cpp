@@ -1,6 +1,8 @@
-// Arcs and triangles under the Cauchy kernel by panels, under the compact one by adaptive quadrature.
+// Arcs, and triangles of more than one radius, under the Cauchy kernel by panels, under the compact one by adaptive
+// quadrature.
 #include "field/skeleton/skeletons.h"
 #include "field/skeleton/surface_integral.h"
+#include "field/skeleton/triangle_methods.h"
 
 namespace marrow {
 
@@ -16,7 +18,7 @@ SkeletonSample arc_field(const ArcSkeleton& arc, const Vec3d& p, const Kernel& k
 // The compact kernel of degree 2 has a slope of -1/R^2 up to its edge and none beyond, so that the integral of grad_S
 // changes with p by what the moving edge takes in, too: grad_S there times -dt/dp = 2 v / |dE/dt|.
 template <Derivatives Order>
-SkeletonSample triangle_field(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
+SkeletonSample triangle_by_lines(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
   const Profile profile(kernel, 2);
   const bool has_steep_edge =
       Order >= Derivatives::Second && kernel.family == KernelFamily::Compact && profile.degree() == 2;
@@ -33,6 +35,13 @@ SkeletonSample triangle_field(const TriangleSkeleton& triangle, const Vec3d& p, 
       });
 }
 
+template <Derivatives Order>
+SkeletonSample triangle_field(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
+  const auto by_sides = triangle_by_sides<Order>(triangle, p, kernel);
+  return by_sides ? *by_sides : triangle_by_lines<Order>(triangle, p, kernel);
+}
+
+template SkeletonSample triangle_by_lines<Derivatives::Second>(const TriangleSkeleton&, const Vec3d&, const Kernel&);
 template SkeletonSample arc_field<Derivatives::ScaleInvariant>(const ArcSkeleton&, const Vec3d&, const Kernel&);
 template SkeletonSample arc_field<Derivatives::First>(const ArcSkeleton&, const Vec3d&, const Kernel&);
 template SkeletonSample arc_field<Derivatives::Second>(const ArcSkeleton&, const Vec3d&, const Kernel&);

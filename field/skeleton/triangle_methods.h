@@ -19,4 +19,11 @@ SkeletonSample triangle_by_lines(const TriangleSkeleton&, const Vec3d& p, int fa
 template <Derivatives>
 std::optional<SkeletonSample> triangle_by_sides(const TriangleSkeleton&, const Vec3d& p, int family_degree);
 
+/// The same under any kernel; under the Cauchy and the compact one nodes of the adaptive rules of surface_integral.h,
+/// and by its sides some hundred nodes for one radius alone. [compact_plate.h]
+template <Derivatives>
+SkeletonSample triangle_by_lines(const TriangleSkeleton&, const Vec3d& p, const Kernel&);
+template <Derivatives>
+std::optional<SkeletonSample> triangle_by_sides(const TriangleSkeleton&, const Vec3d& p, const Kernel&);
+
 }  // namespace marrow

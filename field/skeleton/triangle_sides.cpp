@@ -1,12 +1,14 @@
-// Field of a triangle of one radius: integrals along its sides.
+// Field of a triangle by integrals along its sides: of one radius under any kernel.
 #include <array>
 #include <cmath>
 #include <cstddef>
 
 #include "field/kernel/inverse_family.h"
+#include "field/kernel/profile.h"
 #include "field/kernel/segment_moments.h"
 #include "field/math/elementary.h"
 #include "field/skeleton/border_terms.h"
+#include "field/skeleton/compact_plate.h"
 #include "field/skeleton/plate.h"
 #include "field/skeleton/tapered_plate.h"
 #include "field/skeleton/triangle_methods.h"
@@ -36,6 +38,12 @@ void add_from_border(const Plate& plate, const Side& side, int q, PlateIntegrals
   });
 }
 
+// A kernel scale d^-m, with the height of the plate counted into d.
+struct Power {
+  int m;
+  double scale;
+};
+
 PlateIntegrals plate_integrals(const Plate& plate, int m) {
   const int q = m - 2;
   const bool from_foot = plate.counts_from_foot();
@@ -51,11 +59,11 @@ PlateIntegrals plate_integrals(const Plate& plate, int m) {
   return sum;
 }
 
-// In the plane I(m) changes as the border passes over d^-m: its gradient there is -sum out int d^-m dt.
+// In the plane I(m) changes as the border passes over d^-m: its gradient there is -sum out int d^-m dt. The plate
+// stands at the height that counts, the point at h.
 template <Derivatives Order>
-SkeletonSample even_plate_field(const Plate& plate, int n) {
-  const double h = plate.height, scale = 1 / surface_normalisation(n);
-  const int m = kernel_degree(n, 2);
+SkeletonSample even_plate_field(const Plate& plate, const Power& power, double h) {
+  const auto [m, scale] = power;
   const PlateIntegrals I = plate_integrals(plate, m);
   SkeletonSample sum;
   sum.value = scale * I[0];
@@ -67,7 +75,7 @@ SkeletonSample even_plate_field(const Plate& plate, int n) {
   for (const Side& side : plate.sides) {
     const SegmentView line{.t1 = side.t1,
                            .t2 = side.t2,
-                           .h_squared = side.inside * side.inside + h * h,
+                           .h_squared = side.inside * side.inside + plate.height * plate.height,
                            .slope = 0,
                            .radius1 = 1,
                            .radius_at_foot = 1};
@@ -93,7 +101,23 @@ std::optional<SkeletonSample> triangle_by_sides(const TriangleSkeleton& triangle
   if (!(beside * beside + h * h <= plate->narrowest * plate->narrowest)) return {};
   if (beside == 0 && h == 0) return SkeletonSample::on_skeleton();
   if (!plate->is_even()) return tapered_plate_field<Order>(*plate, n);
-  return even_plate_field<Order>(*plate, n);
+  return even_plate_field<Order>(*plate, {kernel_degree(n, 2), 1 / surface_normalisation(n)}, h);
+}
+
+// The Cauchy kernel (1 + s^2 d^2)^(-m/2) is s^-m times a power of the distance from 1/s higher up.
+template <Derivatives Order>
+std::optional<SkeletonSample> triangle_by_sides(const TriangleSkeleton& triangle, const Vec3d& p,
+                                                const Kernel& kernel) {
+  constexpr double most_cancelled = 64;  // two digits of those of the sides
+  if (kernel.family == KernelFamily::Inverse) return triangle_by_sides<Order>(triangle, p, kernel.degree);
+  auto plate = plate_seen_from(triangle, p);
+  if (!plate || !plate->is_even() || !(plate->beside <= most_cancelled * plate->narrowest)) return {};
+  if (kernel.family == KernelFamily::Compact) return compact_plate_field<Order>(*plate, kernel);
+  const Profile profile(kernel, 2);
+  const double h = plate->height, s = kernel.shape;
+  plate->height = std::sqrt(h * h + 1 / (s * s));
+  const double scale = 1 / (half_power(s * s, profile.degree()) * profile.normalisation());
+  return even_plate_field<Order>(*plate, {profile.degree(), scale}, h);
 }
 
 template std::optional<SkeletonSample> triangle_by_sides<Derivatives::ScaleInvariant>(const TriangleSkeleton&,
@@ -102,5 +126,11 @@ template std::optional<SkeletonSample> triangle_by_sides<Derivatives::First>(con
                                                                              int);
 template std::optional<SkeletonSample> triangle_by_sides<Derivatives::Second>(const TriangleSkeleton&, const Vec3d&,
                                                                               int);
+template std::optional<SkeletonSample> triangle_by_sides<Derivatives::ScaleInvariant>(const TriangleSkeleton&,
+                                                                                      const Vec3d&, const Kernel&);
+template std::optional<SkeletonSample> triangle_by_sides<Derivatives::First>(const TriangleSkeleton&, const Vec3d&,
+                                                                             const Kernel&);
+template std::optional<SkeletonSample> triangle_by_sides<Derivatives::Second>(const TriangleSkeleton&, const Vec3d&,
+                                                                              const Kernel&);
 
 }  // namespace marrow

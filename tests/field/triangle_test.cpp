@@ -145,6 +145,28 @@ TEST(Triangle, IsTheSameBySidesAndByLines) {
   expect_same(compared, 2000, 1e-9);
 }
 
+// One radius for all, under a kernel of a family.
+Kernel even_kernel(Random& random, KernelFamily family, TriangleSkeleton& triangle) {
+  triangle.radii = {triangle.radii[0], triangle.radii[0], triangle.radii[0]};
+  const double shape = family == KernelFamily::Compact ? random.between(1.2, 4) : random.between(0.5, 3);
+  return {family, random.whole(min_kernel_degree, max_kernel_degree), shape};
+}
+
+TEST(Triangle, IsTheSameBySidesAndByLinesUnderAnyKernel) {
+  Random random(85);
+  for (const KernelFamily family : {KernelFamily::Compact, KernelFamily::Cauchy}) {
+    Comparison compared;
+    for (int i = 0; i < 600; ++i) {
+      auto [t, p] = place_near_triangle(random, i);
+      const Kernel kernel = even_kernel(random, family, t);
+      const auto sides = triangle_by_sides<second>(t, p, kernel);
+      if (!sides || sides->value < 1e-6) continue;
+      compared.add(*sides, triangle_by_lines<second>(t, p, kernel));
+    }
+    expect_same(compared, 200, 1e-10);
+  }
+}
+
 TEST(Triangle, SidesKeepTheirDigitsWhereTheTriangleIsCut) {
   Random random(84);
   Comparison compared;
@@ -163,6 +185,40 @@ TEST(Triangle, SidesKeepTheirDigitsWhereTheTriangleIsCut) {
     compared.add(*whole, parts);
   }
   expect_same(compared, 1000, 1e-10);
+}
+
+TEST(Triangle, SidesKeepTheirDigitsUnderAnyKernelWhereTheTriangleIsCut) {
+  Random random(86);
+  for (const KernelFamily family : {KernelFamily::Compact, KernelFamily::Cauchy}) {
+    Comparison compared;
+    for (int i = 0; i < 3000; ++i) {
+      auto [t, p] = place_near_triangle(random, i);
+      const Kernel kernel = even_kernel(random, family, t);
+      const auto& [a, b, c] = t.vertices;
+      const Vec3d middle = lerp(b, c, random.between(0.3, 0.7));
+      const auto whole = triangle_by_sides<second>(t, p, kernel);
+      const auto left = triangle_by_sides<second>({{a, b, middle}, t.radii}, p, kernel),
+                 right = triangle_by_sides<second>({{a, middle, c}, t.radii}, p, kernel);
+      if (!whole || !left || !right || whole->value < 1e-9) continue;
+      SkeletonSample parts = *left;
+      parts += *right;
+      compared.add(*whole, parts);
+    }
+    expect_same(compared, 1000, 1e-10);
+  }
+}
+
+// The support's edge is where it should be, and what is beyond has no field.
+TEST(Triangle, CompactSupportEndsAtItsEdge) {
+  const TriangleSkeleton t{{Vec3d{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {0.5, 0.5, 0.5}};
+  for (int n = min_kernel_degree; n <= max_kernel_degree; ++n)
+    for (const Vec3d& away : {Vec3d{0, 0, 1}, {-0.6, -0.8, 0}, {-1, 0, 0}, {0, -0.8, 0.6}}) {
+      const Kernel kernel{KernelFamily::Compact, n, 2};
+      const Vec3d on = away.z == 1 || away.x == 0 ? Vec3d{0.6, away.z == 1 ? 0.6 : 0, 0} : Vec3d{};
+      EXPECT_EQ(triangle_field<second>(t, on + away * 1.0001, kernel).value, 0);
+      const SkeletonSample inside = triangle_field<second>(t, on + away * 0.95, kernel);
+      EXPECT_TRUE(inside.value > 0 && dot(inside.si_gradient, away) < 0);
+    }
 }
 
 TEST(Triangle, WithoutAreaHasNoField) {
