@@ -3,96 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "field/kernel/profile.h"
+#include "field/blend/nearest_places.h"
 #include "field/skeleton/corners.h"
+#include "field/skeleton/radii.h"
 
 namespace marrow {
 namespace {
 
-using Span = Vec3<Interval>;
-using Rows = std::array<Span, 3>;
-
-Span span_of(const Box3& box, const Vec3d& from) {
-  Span v;
-  for (std::size_t i = 0; i < 3; ++i) v[i] = Interval(box.lower[i], box.upper[i]) - Interval(from[i]);
-  return v;
-}
-Interval along(const Span& v, const Vec3d& u) { return v.x * u.x + v.y * u.y + v.z * u.z; }
-Span times(const Vec3d& u, const Interval& t) { return {t * u.x, t * u.y, t * u.z}; }
-Interval squared_length(const Span& v) { return square(v.x) + square(v.y) + square(v.z); }
-
-constexpr Rows identity{Span{1, 0, 0}, Span{0, 1, 0}, Span{0, 0, 1}};
-
-// A place q that may be the nearest one, seen from the points of a box.
-struct Place {
-  Span to_point;  // p - q
-  Interval radius;
-  Rows turns;    // the Jacobian of p - q, less (p - q) by that of ln radius
-  bool is_real;  // for every point a place of the skeleton, though it may not be the nearest one
-
-  Interval scaled_squared() const { return squared_length(to_point) / square(radius); }
-};
-
-// The few places of one skeleton.
-class Places {
- public:
-  void add(const Place& p) { all_[count_++] = p; }
-  // A place is out where another is nearer all over the box.
-  std::optional<PrimitiveSlopes> slopes(const Kernel&) const;
-
- private:
-  std::array<Place, 10> all_;
-  std::size_t count_ = 0;
-};
-
-Interval padded(double a, double b) {
-  const Interval x{std::min(a, b), std::max(a, b)};
-  return {x.lo - 1e-12 * std::fabs(x.lo), x.hi + 1e-12 * std::fabs(x.hi)};
-}
-
-// All derivatives of the kernels by y = e^2 are monotone. As e is stationary at q, grad y = 2 (p - q) / radius^2;
-// S = 2 k'(y) (p - q) / radius.
-std::optional<PrimitiveSlopes> slopes_from(const Place& q, const Interval& y, const Profile& profile) {
-  const ProfileSample near = profile.at(y.lo), far = profile.at(y.hi);
-  if (!std::isfinite(near.curvature)) return {};
-  const Interval over = Interval(1 / profile.normalisation()) / q.radius;
-  const Interval slope = 2 * padded(near.slope, far.slope) * over;
-  const Interval bend = 4 * padded(near.curvature, far.curvature) * over / square(q.radius);
-  const Span& v = q.to_point;
-  PrimitiveSlopes s;
-  for (std::size_t i = 0; i < 3; ++i) {
-    s.gradient[i] = slope / q.radius * v[i];
-    for (std::size_t j = 0; j < 3; ++j)
-      s.J[i][j] = bend * (i == j ? square(v[i]) : v[i] * v[j]) + slope * q.turns[i][j];
-  }
-  return s;
-}
-
-PrimitiveSlopes hull(const PrimitiveSlopes& a, const PrimitiveSlopes& b) {
-  PrimitiveSlopes both;
-  for (std::size_t i = 0; i < 3; ++i) {
-    both.gradient[i] = hull(a.gradient[i], b.gradient[i]);
-    for (std::size_t j = 0; j < 3; ++j) both.J[i][j] = hull(a.J[i][j], b.J[i][j]);
-  }
-  return both;
-}
-
-std::optional<PrimitiveSlopes> Places::slopes(const Kernel& kernel) const {
-  const Profile profile(kernel, 0);
-  double nearest = rounding::inf;
-  for (std::size_t i = 0; i < count_; ++i)
-    if (all_[i].is_real) nearest = std::min(nearest, all_[i].scaled_squared().hi);
-  std::optional<PrimitiveSlopes> sum;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Interval y = all_[i].scaled_squared();
-    if (y.lo > nearest) continue;
-    if (!(all_[i].radius.lo > 0) || (kernel.family == KernelFamily::Inverse && !(y.lo > 0))) return {};
-    const auto own = slopes_from(all_[i], y, profile);
-    if (!own) return {};
-    sum = sum ? hull(*sum, *own) : *own;
-  }
-  return sum;
-}
+using namespace nearest_places;
 
 // As nearest_of() in distance_field.cpp: the place stands at t = foot + slope h^2 / radius_f along the line, which
 // moves by grad t = u + slope (2 across - slope h^2 / radius_f u) / radius_f. Where the radius at the foot vanishes, or
@@ -137,7 +55,9 @@ bool add_places(const SegmentSkeleton& s, const Box3& box, Places& places) {
   return true;
 }
 
-// In the plane of a triangle: q = foot + rise height^2 / radius_f. Nothing where the place has no bounds.
+// In the plane of a triangle: q = foot + rise height^2 / radius_f, as along a segment: a place in the triangle has a
+// radius_f of at least |rise|^2 height^2 over the way from the foot, along the rise, to the corner farthest that way.
+// Nothing where the place has no bounds.
 struct InPlane {
   Place place;
   bool may_be_inside;
@@ -148,20 +68,29 @@ std::optional<InPlane> place_in_plane(const TriangleSkeleton& s, const Box3& box
   const Vec3d rise = dual[0] * (s.radii[1] - s.radii[0]) + dual[1] * (s.radii[2] - s.radii[0]);
   const Vec3d n = corners.normal / std::sqrt(corners.area2);
   const Span from_corner = span_of(box, s.vertices[0]);
-  const Interval height = along(from_corner, n);
+  const Interval height = along(from_corner, n), height_squared = square(height);
   const Span over = times(n, height), foot = from_corner - over;
-  const Interval foot_radius = s.radii[0] + along(foot, rise);
-  if (!(foot_radius.lo > 0)) return {};
-  const Interval lean = square(height) / foot_radius;
+  Interval foot_radius = s.radii[0] + along(foot, rise);
+  const bool may_be_behind = !(foot_radius.lo > 0);
+  const double steep = length_squared(rise), to_largest = largest_radius(s) - foot_radius.lo;  // the way times |rise|
+  if (may_be_behind) {
+    const double least = steep * height_squared.lo / to_largest * (1 - 1e-9);
+    if (foot_radius.hi < least) return InPlane{{}, false};
+    if (!(least > 0)) return {};
+    foot_radius.lo = least;
+  }
+  Interval lean = height_squared / foot_radius;
+  if (may_be_behind) lean.hi = std::min(lean.hi, to_largest / steep * (1 + 1e-9));
   const Span beside = times(rise, lean), q = foot + beside;
   const Interval first = along(q, dual[0]), second = along(q, dual[1]), both = first + second;
   constexpr double slack = 1e-12;
-  const bool is_inside = first.lo > slack && second.lo > slack && both.hi < 1 - slack;
+  const bool is_inside = !may_be_behind && first.lo > slack && second.lo > slack && both.hi < 1 - slack;
   const bool may_be_inside = first.hi > -slack && second.hi > -slack && both.lo < 1 + slack;
-  InPlane in{{over - beside, s.radii[0] + along(q, rise), {}, is_inside}, may_be_inside};
+  const Interval radii{least_radius(s) * (1 - slack), largest_radius(s) * (1 + slack)};
+  InPlane in{{over - beside, clamped(s.radii[0] + along(q, rise), radii), {}, is_inside}, may_be_inside};
   // foot and radius_f do not move with the height, beside does: by the chain rule; rise lies in the plane
   const Span moves = times(n, 2 * height / foot_radius) - times(rise, lean / foot_radius);
-  const Span widens = times(rise, 1) + moves * Interval(length_squared(rise));
+  const Span widens = times(rise, 1) + moves * Interval(steep);
   for (std::size_t i = 0; i < 3; ++i)
     in.place.turns[i] = times(n, n[i]) - moves * Interval(rise[i]) - widens * (in.place.to_point[i] / in.place.radius);
   return in;

@@ -23,7 +23,7 @@ struct PrimitiveSlopes {
 /// moves without jumps and S has slopes. Nothing where a place is not bounded, or the field is not.
 std::optional<PrimitiveSlopes> distance_slopes(const SegmentSkeleton&, const Box3&, const Kernel&);
 std::optional<PrimitiveSlopes> distance_slopes(const TriangleSkeleton&, const Box3&, const Kernel&);
-/// Along an arc the place may jump.
-inline std::optional<PrimitiveSlopes> distance_slopes(const ArcSkeleton&, const Box3&, const Kernel&) { return {}; }
+/// Along an arc the place may jump: nothing where two that are not beside each other may be nearest.
+std::optional<PrimitiveSlopes> distance_slopes(const ArcSkeleton&, const Box3&, const Kernel&);
 
 }  // namespace marrow

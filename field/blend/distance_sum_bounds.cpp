@@ -23,15 +23,18 @@ constexpr double inf = Box3::inf;
 // How far the unit vector from the nearest point of the skeleton turns over rho: level surfaces of e are those of
 // convex bodies, flat, round or conical. Seen from the apex of a cone of the slope k, at the angle theta from its axis,
 // k e = sin theta and the distance is tan theta times that from the apex, so that the vector turns by tan theta over
-// the distance at most. From k e = 1 on the larger end is nearest. Not known for arcs, whose nearest point may jump.
+// the distance at most. From k e = 1 on the larger end is nearest. Of triangles of several radii and of arcs, whose
+// nearest point may jump, slopes tell it.
 double turn(const SegmentSkeleton& s, double distance, double rho, const Interval& e) {
   const double slope = std::fabs(s.radius_to - s.radius_from) / length(s.to - s.from),
                round = 2 * rho / (distance - rho);
   if (slope * e.lo > 1) return round;
   return slope * e.hi < 1 ? round / std::sqrt(1 - square(slope * e.hi)) : inf;
 }
+bool is_even(const TriangleSkeleton& s) { return s.radii[0] == s.radii[1] && s.radii[1] == s.radii[2]; }
+bool is_even(const ArcSkeleton&) { return false; }
 double turn(const TriangleSkeleton& s, double distance, double rho, const Interval&) {
-  return s.radii[0] == s.radii[1] && s.radii[1] == s.radii[2] ? 2 * rho / (distance - rho) : inf;
+  return is_even(s) ? 2 * rho / (distance - rho) : inf;
 }
 double turn(const ArcSkeleton&, double, double, const Interval&) { return inf; }
 
@@ -67,6 +70,22 @@ Interval steepness_between(const Profile& profile, const Kernel& kernel, const I
   const bool has_top = e.lo * (1 - 1e-9) <= top && top <= e.hi * (1 + 1e-9);
   const double most = has_top ? steepest(profile, kernel) : std::max(a, b);
   return {std::min(a, b) * (1 - 1e-9), most * (1 + 1e-9)};
+}
+
+double largest_size(const Vec3<Interval>& v) {
+  return std::sqrt(square(abs(v.x).hi) + square(abs(v.y).hi) + square(abs(v.z).hi)) * (1 + 1e-15);
+}
+
+// What slopes tell of f and S, if it is less: they change from the middle by the steepest slope times rho at most.
+void narrow(SumBounds::Between& b, const SkeletonSample& middle, const PrimitiveSlopes& slopes, double rho) {
+  const double f_by = rho * largest_size(slopes.gradient) * (1 + 1e-9) + 1e-10 * middle.value;
+  b.f = {std::max(b.f.lo, middle.value - f_by), std::min(b.f.hi, middle.value + f_by)};
+  const double turns = std::sqrt(square(largest_size(slopes.J[0])) + square(largest_size(slopes.J[1])) +
+                                 square(largest_size(slopes.J[2])));
+  const double S_by = rho * turns * (1 + 1e-9) + 1e-10 * length(middle.si_gradient);
+  if (!(S_by < b.S_by)) return;
+  b.S = middle.si_gradient;
+  b.S_by = S_by;
 }
 
 // e = min d / radius changes by rho / radius at most, f = k(e), |S| = |k'(e)|.
@@ -184,8 +203,11 @@ void SumBounds::add_distances(const BlendField& blend) {
   }
   const auto add_one = [&](const auto& s) {
     Between bounds = distance_bounds(s, *this, kernel);
+    const auto slopes = has_slopes() || !is_even(s) ? distance_slopes(s, box_, kernel) : std::nullopt;
+    if (slopes && !is_even(s))
+      narrow(bounds, distance_field<Derivatives::ScaleInvariant>(s, center_, kernel), *slopes, rho_);
     if (keeps_parts_) keep(distance_part(s, bounds, *this, kernel));
-    if (has_slopes()) bounds.slopes = distance_slopes(s, box_, kernel);
+    if (has_slopes()) bounds.slopes = slopes;
     add(bounds);
   };
   for (const auto& s : blend.distance_triangles.skeletons) add_one(s);

@@ -127,13 +127,15 @@ struct ArcCurve {
   double radius_begin, radius_slope;
 
   double radius(double angle) const { return radius_begin + radius_slope * (angle - view.begin); }
-  double squared_distance(double angle) const {
-    const double s = sin(angle / 2);
-    return view.gap() + 4 * view.r * view.major * s * s;
-  }
-  // of e^2 by the angle, but for a positive factor
-  double slope(double angle) const {
-    return view.r * view.major * sin(angle) * radius(angle) - squared_distance(angle) * radius_slope;
+  // Of e^2 by the angle, but for a positive factor, and how that changes.
+  struct Slope {
+    double value, bend;
+  };
+  Slope slope(double angle) const {
+    const auto [s, c] = sincos(angle / 2);
+    const double chord = 2 * view.r * view.major * s, d2 = view.gap() + 2 * chord * s, tau = radius(angle);
+    return {chord * c * tau - d2 * radius_slope,
+            view.r * view.major * (c * c - s * s) * tau - chord * c * radius_slope};
   }
   Nearest at(double angle) const {
     const auto half = sincos(angle / 2);
@@ -152,12 +154,18 @@ struct ArcCurve {
   }
 };
 
-// Where the slope turns from falling to rising between low and high.
+// Where the slope turns from falling to rising between low and high: by Newton's steps, and halvings where they leave
+// what is left or are slow.
 double minimum_between(const ArcCurve& curve, double low, double high) {
-  for (;;) {
-    const double middle = low + (high - low) / 2;
-    if (!(low < middle && middle < high)) return middle;
-    (curve.slope(middle) < 0 ? low : high) = middle;
+  double at = low + (high - low) / 2;
+  for (int step = 1;; ++step) {
+    const auto [slope, bend] = curve.slope(at);
+    (slope < 0 ? low : high) = at;
+    const double newton = at - slope / bend, middle = low + (high - low) / 2;
+    const bool is_inside = newton > low && newton < high && step % 4 != 0;
+    const double next = is_inside ? newton : middle;
+    if (!(low < middle && middle < high) || std::fabs(next - at) <= 0x1p-53 * std::fabs(at)) return next;
+    at = next;
   }
 }
 
@@ -172,10 +180,14 @@ Nearest nearest_of(const ArcSkeleton& s, const Vec3d& p) {
   // falls to less than that share, or the minima are level with each other
   constexpr int parts = 64;
   const double step = (view.end - view.begin) / parts;
-  for (int i = 0; i < parts; ++i) {
-    const double low = view.begin + step * i, high = i + 1 == parts ? view.end : view.begin + step * (i + 1);
-    if (curve.slope(low) < 0 && curve.slope(high) >= 0)
-      best = nearer(best, curve.moving_at(minimum_between(curve, low, high)));
+  double low = view.begin;
+  bool falls = curve.slope(low).value < 0;
+  for (int i = 1; i <= parts; ++i) {
+    const double high = i == parts ? view.end : view.begin + step * i;
+    const bool falls_there = curve.slope(high).value < 0;
+    if (falls && !falls_there) best = nearer(best, curve.moving_at(minimum_between(curve, low, high)));
+    low = high;
+    falls = falls_there;
   }
   return best;
 }
