@@ -6,6 +6,7 @@
 
 #include "field/blend/steepest_slope.h"
 #include "field/blend/sum_bounds.h"
+#include "field/blend/support_share.h"
 #include "field/skeleton/distance.h"
 #include "field/skeleton/radii.h"
 #include "field/skeleton/skeletons.h"
@@ -14,17 +15,6 @@ namespace marrow {
 namespace {
 
 constexpr double inf = Box3::inf;
-
-// What a primitive can hold of its skeleton within a distance, over a radius to the power of its dimension.
-double share(const PointSkeleton&, double) { return 1; }
-double share(const SegmentSkeleton& s, double reach) {
-  return std::min(length(s.to - s.from), 2 * reach) / least_radius(s);
-}
-double share(const ArcSkeleton& s, double) { return s.major * (s.end - s.begin) / least_radius(s); }
-double share(const TriangleSkeleton& s, double reach) {
-  const double area = 0.5 * length(cross(s.vertices[1] - s.vertices[0], s.vertices[2] - s.vertices[0]));
-  return std::min(area, 3.2 * reach * reach) / (least_radius(s) * least_radius(s));
-}
 
 // sup of the second derivatives, over the scaled position, of the normalised compact kernel (1 - x^2/R^2)^h, h = m/2:
 // its derivatives along and across are -2h/R^2 (1-y)^(h-1) and that plus 4h(h-1)/R^2 y (1-y)^(h-2), y = x^2/R^2 <= 1.
@@ -55,34 +45,6 @@ double most_changed(const Profile& profile, const Kernel& kernel, double step) {
   return profile.degree() != 3 ? inf
                                : 3 / (R * R) / profile.normalisation() * (step + std::sqrt(2 * R * step)) * (1 + 1e-9);
 }
-
-// How much of a skeleton, over a radius to the power of its dimension, may come into the support or leave it on a way
-// of rho: that whose distance differs from R radii by so much. Along a segment, d^2 = (R radius + by)^2 has the roots
-// (R slope c +- sqrt(c^2 - (1 - R^2 slope^2) h^2)) / (1 - R^2 slope^2) from the foot, c = R radius_f + by. `anywhere`:
-// from all places that lie along the segment from p.
-double crossing(const PointSkeleton& s, const Vec3d& p, double rho, double R, bool) {
-  return std::fabs(length(p - s.at) - R * s.radius) <= rho * (1 + 1e-9) + 1e-12 * s.radius ? 1 : 0;
-}
-double crossing(const SegmentSkeleton& s, const Vec3d& p, double rho, double R, bool anywhere) {
-  const double along = length(s.to - s.from), slope = (s.radius_to - s.radius_from) / along;
-  const double open = 1 - square(R * slope);
-  if (!(open > 0)) return along / least_radius(s);
-  const Vec3d u = (s.to - s.from) / along, from_start = p - s.from;
-  const double foot = dot(from_start, u), h_squared = length_squared(from_start - u * foot);
-  const auto chord = [&](double by) {
-    const double c = R * (s.radius_from + slope * foot) + by, under = square(c) - open * h_squared;
-    if (!(c > 0 && under > 0)) return 0.0;
-    const auto place = [&](double side) {
-      const double at = foot + (R * slope * c + side * std::sqrt(under)) / open;
-      return anywhere ? at : std::clamp(at, 0.0, along);
-    };
-    return place(1) - place(-1);
-  };
-  const double slack = rho * (1 + 1e-9) + 1e-9 * least_radius(s);
-  return std::max(0.0, chord(slack) - chord(-slack)) / least_radius(s);
-}
-// Not known; their samples have no J.
-double crossing(const auto&, const Vec3d&, double, double, bool) { return inf; }
 
 // How far the second derivatives of the kernel change over a scaled step, of what either support `held`
 // and where `crossed` of it comes in or goes, at most: with w = 1 - y they are -a w^(h-1) + b w^(h-2) v v^T, a =
@@ -146,15 +108,16 @@ void SumBounds::add_compact(const BlendField& blend) {
         continue;
       }
       const SkeletonSample sample = field(s);
-      const double held = share(s, reach), least = least_radius(s), largest = largest_radius(s);
+      const double held = share_within(s, reach), least = least_radius(s), largest = largest_radius(s);
       const double per_length = steep * held / least * (1 + 1e-9);
       const double bend = held_bend(profile, kernel, s, held);
       if (keeps_parts_) keep(smooth_part(sample, per_length, bend / (least * least), rho_));
       if (bend < inf) {
         const auto along = beside(s, profile, kernel, center_, stretch());
         const double across = along ? along->across : rho_;
-        const double crossed = crossing(s, center_, across, kernel.shape, along.has_value());
-        const double changes = bend_changes(profile, kernel, across / least, share(s, reach + across), crossed) / least;
+        const double crossed = share_crossing(s, center_, across, kernel.shape, along.has_value());
+        const double changes =
+            bend_changes(profile, kernel, across / least, share_within(s, reach + across), crossed) / least;
         add(sample, Smooth{per_length, bend / (least * least), largest, across, changes, along ? along->ends_bent : 0,
                            along ? along->ends_J_changes : 0});
         continue;
@@ -170,12 +133,11 @@ void SumBounds::add_compact(const BlendField& blend) {
     }
   };
   constexpr auto second = Derivatives::Second;
-  constexpr auto first = Derivatives::First;
   const Vec3d& p = center_;
   all(blend.points.skeletons, 0, [&](const PointSkeleton& s) { return point_field<second>(s, p, kernel); });
   all(blend.segments.skeletons, 1, [&](const SegmentSkeleton& s) { return segment_field<second>(s, p, kernel); });
-  all(blend.triangles.skeletons, 2, [&](const TriangleSkeleton& s) { return triangle_field<first>(s, p, kernel); });
-  all(blend.arcs.skeletons, 1, [&](const ArcSkeleton& s) { return arc_field<first>(s, p, kernel); });
+  all(blend.triangles.skeletons, 2, [&](const TriangleSkeleton& s) { return triangle_field<second>(s, p, kernel); });
+  all(blend.arcs.skeletons, 1, [&](const ArcSkeleton& s) { return arc_field<second>(s, p, kernel); });
 }
 
 }  // namespace marrow

@@ -92,11 +92,15 @@ BlendField blend_of_finite_height(Random& random) {
   blend.alpha = random.between(0, 1) < 0.4 ? std::numbers::pi / 2 : random.between(0, 1.5);
   if (random.between(0, 1) < 0.5) blend.projection = Projection::Exact;
   for (int i = random.whole(1, 3); i > 0; --i) {
-    const int kind = random.whole(0, 9);
+    const int kind = random.whole(0, 11);
     if (kind < 3) blend.points.add(random.point(), {});
     if (kind >= 3 && kind < 7) blend.segments.add(random.segment(), {});
     if (kind == 7 || kind == 8) blend.distance_segments.add(random.segment(), {});
     if (kind == 9) blend.arcs.add(random.arc(), {});
+    if (kind < 10) continue;
+    TriangleSkeleton triangle = random.triangle();
+    if (kind == 11) triangle.radii = {triangle.radii[0], triangle.radii[0], triangle.radii[0]};
+    blend.triangles.add(triangle, {});
   }
   return blend;
 }

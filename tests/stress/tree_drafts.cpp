@@ -182,7 +182,7 @@ void supports(BodyDraft& d, Random& random) {
 std::uint32_t varied_leaf(BodyDraft& d, Random& random) {
   BlendField blend = varied_blend(random, random.whole(0, 109));
   if (maybe(random, 0.3)) blend.distance_segments = {};
-  // Integrals of the compact kernel along arcs take 0.1 ms each, and a ray thousands of them.
+  // Integrals of the compact kernel along arcs take 25 us each, and a ray a thousand of them.
   if (blend.kernel == KernelFamily::Compact) blend.arcs = {};
   for (std::size_t i = 0; i < blend.segments.size(); ++i) {
     d.places.push_back(blend.segments.skeletons[i].from);
