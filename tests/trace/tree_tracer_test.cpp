@@ -220,6 +220,28 @@ TEST(TreeTracer, FindsThinBodiesFromFarAway) {
   }
 }
 
+// However far from the origin a body stands, of it parts are told that are thin against it.
+TEST(TreeTracer, FindsThinShellsOfBodiesFarFromTheOrigin) {
+  Random random(49);
+  for (const double thickness : {1e-4, 1e-6, 1e-7}) {
+    const Vec3d center{2.3e4, 3e4, 9e3};
+    FieldDescription field;
+    const FieldNodeId outer = add(field, Sphere{.center = center, .radius = 1, .potential = {}});
+    const FieldNodeId inner = add(field, Sphere{.center = center, .radius = 1 - thickness, .potential = {}});
+    const FieldNodeId ball = add(field, Sphere{.center = center, .radius = 1 - 4 * thickness, .potential = {}});
+    const FieldNodeId shell = add(field, Difference{}, {outer, inner});
+    field.root = add(field, Ricci{1}, {field.add({.what = Union{{shell, ball}}, .where = {}})});
+    const TreeTracer tracer = tracer_of(field);
+    for (int i = 0; i < 50; ++i) {
+      const UnitVec3 direction = normalize(random.vector(1));
+      const CrossingSearch found = traced(tracer, {.origin = center - direction * 3.0, .direction = direction});
+      ASSERT_TRUE(found.t);
+      EXPECT_NEAR(*found.t, 2, 1e-10) << "thickness " << thickness;
+      EXPECT_GT(found.undecided, 1e300);
+    }
+  }
+}
+
 // A ray in the plane of one cut meets another one at their edge: that plane is on the surface, and starts lie beside
 // it.
 TEST(TreeTracer, StartsBesideAPlaneThatTheRayRunsIn) {

@@ -22,11 +22,11 @@ enum class Side { Unknown, Outside, Inside };
 
 class Search {
  public:
-  Search(const FieldTree& tree, std::uint32_t record, const Ray& ray, bool any)
-      : tree_(tree), record_(record), ray_(ray), any_(any) {}
+  Search(const FieldTree& tree, std::uint32_t record, const Ray& ray, double body, bool any)
+      : tree_(tree), record_(record), ray_(ray), nearby_(body), any_(any) {}
 
   CrossingSearch run(double begin, double end) {
-    nearby_ = std::max(max_component(abs(ray_.at(begin))), max_component(abs(ray_.at(end))));
+    nearby_ = std::min(nearby_, std::max(max_component(abs(ray_.at(begin))), max_component(abs(ray_.at(end)))));
     // Pieces still to be searched, nearest last.
     open_.push_back({begin, end, Side::Unknown, Side::Unknown});
     while (!open_.empty() && !found_.t) {
@@ -147,8 +147,9 @@ class Search {
 
   // Of t, or of the coordinates that the ray runs through.
   double size(double t) const { return std::max(std::fabs(t), max_component(abs(ray_.origin))); }
-  // Sums of a blend are known to 3e-11 of themselves: pieces shorter than 2^-34 (6e-11) of coordinates there say
-  // nothing new. It is far below the ulp of a float. Where the ray comes from far away, places are rounded by more.
+  // Sums of a blend are known to 3e-11 of themselves: pieces shorter than 2^-34 (6e-11) of the body, or of coordinates
+  // there, say nothing new. It is far below the ulp of a float. Where the body, or the ray's origin, is far away,
+  // places are rounded by more.
   double gap(double t) const { return std::max(0x1p-34 * nearby_, 0x1p-48 * size(t)); }
   static double length(const Piece& piece) { return piece.end - piece.begin; }
   bool is_short(const Piece& piece) const { return length(piece) <= gap(piece.end); }
@@ -179,10 +180,10 @@ class Search {
   const FieldTree& tree_;
   std::uint32_t record_;
   const Ray& ray_;
+  double nearby_;  // the size of the body, or the largest coordinate on the stretch if that is less
   bool any_;
   std::uint32_t allowed_ = first_evaluations;
   double coarseness_ = 1;  // of what is short, over gap()
-  double nearby_ = 0;      // the largest coordinate on the stretch
   std::vector<Piece> open_;
   CrossingSearch found_;
 };
@@ -190,8 +191,8 @@ class Search {
 }  // namespace
 
 CrossingSearch find_crossing(const FieldTree& tree, std::uint32_t record, const Ray& ray, double begin, double end,
-                             bool any) {
-  return Search(tree, record, ray, any).run(begin, end);
+                             double body, bool any) {
+  return Search(tree, record, ray, body, any).run(begin, end);
 }
 
 }  // namespace marrow

@@ -11,14 +11,15 @@
 namespace marrow {
 
 struct CrossingSearch {
-  std::optional<double> t;  ///< of the crossing
-  double undecided =
-      std::numeric_limits<double>::infinity();  ///< where a gap of 2^-34 of t begins that nothing could decide
+  std::optional<double> t;                                     ///< of the crossing
+  double undecided = std::numeric_limits<double>::infinity();  ///< where a gap begins that nothing could decide
   std::uint32_t evaluations = 0;
 };
 
 /// Searches begin <= t <= end for the first change of side; with `any`, for any. A crossing is placed to some ulps.
-/// Of the field below `record`, or of FieldTree::whole.
-CrossingSearch find_crossing(const FieldTree&, std::uint32_t record, const Ray&, double begin, double end, bool any);
+/// Of the field below `record`, or of FieldTree::whole. Gaps of 2^-34 of the size of the body, or of coordinates if
+/// those are less, are too short to decide, and of 2^-48 of coordinates and the way from the ray's origin.
+CrossingSearch find_crossing(const FieldTree&, std::uint32_t record, const Ray&, double begin, double end, double body,
+                             bool any);
 
 }  // namespace marrow

@@ -93,7 +93,7 @@ namespace {
 // Leaves in the order of the ray.
 class CellSearch {
  public:
-  CellSearch(const Ray& ray, bool any, CellLog& log) : ray_(ray), any_(any), log_(log) {}
+  CellSearch(const Ray& ray, double body, bool any, CellLog& log) : ray_(ray), body_(body), any_(any), log_(log) {}
 
   std::optional<TreeHit> in(const TreeCell& cell, const Interval& t) {
     if (cell.is_leaf()) return in(cell.tree(), FieldTree::whole, t, &cell);
@@ -121,7 +121,7 @@ class CellSearch {
   }
 
   std::optional<TreeHit> in(const FieldTree& tree, std::uint32_t record, const Interval& t, const TreeCell* cell) {
-    const CrossingSearch found = find_crossing(tree, record, ray_, t.lo, t.hi, any_);
+    const CrossingSearch found = find_crossing(tree, record, ray_, t.lo, t.hi, body_, any_);
     log_.evaluations += found.evaluations;
     log_.undecided = std::min(log_.undecided, found.undecided);
     return found.t ? std::optional(TreeHit{*found.t, cell}) : std::nullopt;
@@ -129,6 +129,7 @@ class CellSearch {
 
  private:
   const Ray& ray_;
+  double body_;
   bool any_;
   CellLog& log_;
 };
@@ -143,9 +144,11 @@ std::optional<TreeHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, b
   if (any) t.hi = std::min(t.hi, ray.t_max + nearly_ended);
   Ray onward = ray;
   double stride = t.hi - t.lo;
+  // of half the body, as the first cells are eighths
+  const double body = (1 << (first_levels - 1)) * max_component(c.box.size());
   while (t.lo <= t.hi) {
     // Any crossing is told by a place behind it: not what is_covered() asks for.
-    CellSearch search(onward, any && members_.empty(), log);
+    CellSearch search(onward, body, any && members_.empty(), log);
     const auto hit = c.part != nullptr ? search.in(*c.part, t) : search.in(tree_, c.member, t, nullptr);
     // Where any crossing may lie behind the end of the ray, the first one tells.
     if (any && hit && hit->t > ray.t_max - nearly_ended) return first_hit(cell, ray, false, log);

@@ -39,7 +39,7 @@ class TreeTracer {
   const Box3& cell_box(std::size_t cell) const { return cells_[cell].box; }
 
   /// The first crossing of the surface, from either side, inside a cell with t in [ray.t_min, ray.t_max]; t does not
-  /// depend on ray.t_max. With `any`, any crossing. `undecided` of the log: a gap of 2^-34 of coordinates, without a
+  /// depend on ray.t_max. With `any`, any crossing. `undecided` of the log: a gap of 2^-34 of the body, without a
   /// change of side from end to end, in which no bound excludes a touch.
   std::optional<TreeHit> first_hit(std::size_t cell, const Ray&, bool any, CellLog&) const;
   /// `along`: of the ray that met it. Where a field jumps, or members of a union meet, further rays may have to start
