@@ -104,10 +104,10 @@ SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, cons
   };
   if (kernel.family != KernelFamily::Inverse) {
     const Profile profile(kernel, 0);
-    const double steep = steepest(profile, kernel) * (1 + 1e-9), by = steep * moved + 1e-10 * f;
-    SumBounds::Between b{.f = {std::max(0.0, f - by), f + by},
-                         .log_slope = f > by ? steep / (least_radius(s) * (f - by)) : inf};
     const Interval lengths = steepness_between(profile, kernel, e);
+    const double by = lengths.hi * moved * (1 + 1e-9) + 1e-10 * f;
+    SumBounds::Between b{.f = {std::max(0.0, f - by), f + by},
+                         .log_slope = f > by ? lengths.hi / (least_radius(s) * (f - by)) * (1 + 1e-9) : inf};
     give_S(b, lengths.lo, lengths.hi);
     return b;
   }
