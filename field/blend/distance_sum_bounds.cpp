@@ -91,8 +91,11 @@ void narrow(SumBounds::Between& b, const SkeletonSample& middle, const Primitive
 // e = min d / radius changes by rho / radius at most, f = k(e), |S| = |k'(e)|.
 template <class Skeleton>
 SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, const Kernel& kernel) {
+  const double distance = distance_to(s, sum.center());
+  if (kernel.family == KernelFamily::Compact && distance > (sum.rho() + kernel.shape * largest_radius(s)) * (1 + 1e-9))
+    return {.f = 0, .log_slope = 0};  // its support is elsewhere
   const SkeletonSample sample = distance_field<Derivatives::ScaleInvariant>(s, sum.center(), kernel);
-  const double f = sample.value, moved = sum.rho() / least_radius(s), distance = distance_to(s, sum.center());
+  const double f = sample.value, moved = sum.rho() / least_radius(s);
   const Interval e = scaled_near(kernel, f, moved);
   const double turned = distance > sum.rho() ? turn(s, distance, sum.rho(), e) : inf;
   // S between its least and largest length, turned by as much.
@@ -126,6 +129,7 @@ SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, cons
 template <class Skeleton>
 SumBounds::Part distance_part(const Skeleton& s, const SumBounds::Between& b, const SumBounds& sum,
                               const Kernel& kernel) {
+  if (b.f.hi == 0) return {.steepest = 0, .bent = 0};
   const double longest = length(b.S) + b.S_by, least = least_radius(s);
   const SkeletonSample sample = distance_field<Derivatives::First>(s, sum.center(), kernel);
   return {.sample = sample,
@@ -143,8 +147,8 @@ struct Largest {
   Largest(const SumBounds::Between& first, std::size_t index) : bounds(first), candidates{index} {}
 
   void add(const SumBounds::Between& other, std::size_t index) {
-    if (other.f.hi < bounds.f.lo) return;
-    if (bounds.f.hi < other.f.lo) {
+    if (other.f.hi < bounds.f.lo || other.f.hi == 0) return;
+    if (bounds.f.hi < other.f.lo || bounds.f.hi == 0) {
       *this = {other, index};
       return;
     }
@@ -158,6 +162,7 @@ struct Largest {
 
   // From one to the other S may jump, unless all of them see the same end.
   std::optional<PrimitiveSlopes> slopes(const auto& skeletons, const Box3& box, const Kernel& kernel) const {
+    if (bounds.f.hi == 0) return PrimitiveSlopes{};
     if (count > candidates.size()) return {};
     const auto first = distance_slopes(skeletons[candidates[0]], box, kernel);
     for (std::size_t i = 1; i < count && first; ++i)
@@ -175,7 +180,7 @@ void SumBounds::keep_strand(const BlendField& blend, std::size_t first, std::spa
   for (const Between& b : strand) largest = std::max(largest, b.f.lo);
   std::vector<std::size_t> candidates;
   for (std::size_t i = 0; i < strand.size(); ++i) {
-    if (strand[i].f.hi < largest) {
+    if (strand[i].f.hi < largest || strand[i].f.hi == 0) {
       keep({.steepest = 0, .bent = 0});
       continue;
     }
@@ -203,8 +208,10 @@ void SumBounds::add_distances(const BlendField& blend) {
   }
   const auto add_one = [&](const auto& s) {
     Between bounds = distance_bounds(s, *this, kernel);
-    const auto slopes = has_slopes() || !is_even(s) ? distance_slopes(s, box_, kernel) : std::nullopt;
-    if (slopes && !is_even(s))
+    std::optional<PrimitiveSlopes> slopes;
+    if (bounds.f.hi == 0) slopes = PrimitiveSlopes{};
+    else if (has_slopes() || !is_even(s)) slopes = distance_slopes(s, box_, kernel);
+    if (slopes && bounds.f.hi > 0 && !is_even(s))
       narrow(bounds, distance_field<Derivatives::ScaleInvariant>(s, center_, kernel), *slopes, rho_);
     if (keeps_parts_) keep(distance_part(s, bounds, *this, kernel));
     if (has_slopes()) bounds.slopes = slopes;
