@@ -116,6 +116,16 @@ Place place_among(const ArcAndBox& seen, const Interval& angles, bool is_real) {
 
 }  // namespace
 
+double place_speed(const ArcSkeleton& s, const Box3& box) {
+  ArcAndBox seen(s, box);
+  const auto angles = narrowed(seen, near_angles(seen, box.center()));
+  if (!angles) return Box3::inf;
+  if (angles->width() == 0 && (angles->lo == s.begin || angles->lo == s.end)) return 0;
+  const double away = sqrt(seen.squared_distance(sincos(*angles))).hi, falls = -seen.fall_slope(*angles).hi;
+  const double most = s.major * seen.radius(*angles).hi + 2 * std::fabs(seen.slope) * away;
+  return falls > 0 ? most / falls * (1 + 1e-9) : Box3::inf;
+}
+
 std::optional<PrimitiveSlopes> distance_slopes(const ArcSkeleton& s, const Box3& box, const Kernel& kernel) {
   ArcAndBox seen(s, box);
   const auto angles = narrowed(seen, near_angles(seen, box.center()));

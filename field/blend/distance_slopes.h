@@ -26,4 +26,7 @@ std::optional<PrimitiveSlopes> distance_slopes(const TriangleSkeleton&, const Bo
 /// Along an arc the place may jump: nothing where two that are not beside each other may be nearest.
 std::optional<PrimitiveSlopes> distance_slopes(const ArcSkeleton&, const Box3&, const Kernel&);
 
+/// How fast the nearest place of an arc moves, at most: its angle over a length; infinite where it may jump.
+double place_speed(const ArcSkeleton&, const Box3&);
+
 }  // namespace marrow

@@ -125,6 +125,9 @@ SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, cons
   return b;
 }
 
+double speed_of_place(const ArcSkeleton& s, const Box3& box) { return place_speed(s, box); }
+double speed_of_place(const auto&, const Box3&) { return inf; }  // mean_angles.cpp tells it
+
 // The same for means, which ask for |grad f| = |S| / radius.
 template <class Skeleton>
 SumBounds::Part distance_part(const Skeleton& s, const SumBounds::Between& b, const SumBounds& sum,
@@ -135,7 +138,8 @@ SumBounds::Part distance_part(const Skeleton& s, const SumBounds::Between& b, co
   return {.sample = sample,
           .f = b.f,
           .steepest = longest / least * (1 + 1e-9),
-          .scaled = scaled_near(kernel, sample.value, sum.rho() / least)};
+          .scaled = scaled_near(kernel, sample.value, sum.rho() / least),
+          .place_speed = speed_of_place(s, sum.box())};
 }
 
 // The skeletons of one strand of which the largest field counts; where several may be that, S is one of theirs.

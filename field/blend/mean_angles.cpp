@@ -10,6 +10,7 @@
 #include "field/blend/gather.h"
 #include "field/blend/primitive_visit.h"
 #include "field/blend/strand_angles.h"
+#include "field/skeleton/corners.h"
 #include "field/skeleton/shares.h"
 
 namespace marrow {
@@ -21,18 +22,6 @@ constexpr double vanishing = 1e-100;
 using Parts = std::vector<SumBounds::Part>;
 
 const Vec3<Interval> any_gradient{Interval::everything(), Interval::everything(), Interval::everything()};
-
-// Where the angle of a skeleton is taken at one place of it and that may jump, or move at any speed.
-bool may_turn_fast(const BlendField& blend) {
-  const auto varies = [](const auto& list) {
-    for (std::size_t i = 0; i < list.alphas.size(); ++i)
-      if (list.angle_varies(i)) return true;
-    return false;
-  };
-  // So may the direction of an arc.
-  const bool is_by_arcs = !blend.direction_bounds.empty() && !blend.distance_arcs.empty();
-  return is_by_arcs || varies(blend.distance_triangles) || varies(blend.distance_arcs);
-}
 
 // From the middle to anywhere in the box, or on the stretch.
 AngleBounds around(const AlphaSample& middle, const MeanChange& change, const Interval& range, const SumBounds& sum) {
@@ -85,6 +74,30 @@ double place_slope(const SegmentSkeleton& s, bool by_distance, const Interval& e
   return k * e.hi < 1 ? (1 + middle_is_off) / (size * (1 - k * k * e.hi * e.hi)) : Box3::inf;
 }
 
+// The same of an angle that is linear over a triangle: along its sides, or in its plane, in which only the way along
+// the gradient of the radius counts.
+double angle_slope(const PrimitiveList<TriangleSkeleton>& list, std::size_t i, const SumBounds::Part& part) {
+  const TriangleSkeleton& s = list.skeletons[i];
+  const Corners corners(s);
+  const auto gradient = [&](double first, double second, double third) {
+    return length(corners.dual[0] * (second - first) + corners.dual[1] * (third - first));
+  };
+  const double first = list.alphas[i], second = list.alphas_to.empty() ? first : list.alphas_to[i];
+  const double third = list.alphas_third.empty() ? first : list.alphas_third[i];
+  const double k = gradient(s.radii[0], s.radii[1], s.radii[2]), e = part.scaled.hi;
+  double speed = k * part.scaled.lo > 1 ? 0 : k * e < 1 ? (1 + middle_is_off) / (1 - k * k * e * e) : Box3::inf;
+  for (std::size_t from = 0; from < 3; ++from) {
+    const std::size_t to = (from + 1) % 3;
+    const SegmentSkeleton side{s.vertices[from], s.vertices[to], s.radii[from], s.radii[to]};
+    speed = std::max(speed, place_slope(side, true, part.scaled) * length(side.to - side.from));
+  }
+  return gradient(first, second, third) * speed;
+}
+double angle_slope(const PrimitiveList<ArcSkeleton>& list, std::size_t i, const SumBounds::Part& part) {
+  const ArcSkeleton& s = list.skeletons[i];
+  return angles_along(list, i).width() * part.place_speed / (s.end - s.begin);
+}
+
 // A primitive as a term of alpha = sum f_i a_i / sum f_i: a_i may be a mean over the skeleton, or the angle at one
 // place.
 template <class Skeleton>
@@ -102,6 +115,9 @@ MeanTerm angle_term(const BlendField& blend, const PrimitiveList<Skeleton>& list
       const double slope = width * place_slope(list.skeletons[i], &list == &blend.distance_segments, part.scaled);
       return with_values(weight.term(common, sum.rho()), {slope, Box3::inf});
     }
+  if constexpr (std::same_as<Skeleton, TriangleSkeleton> || std::same_as<Skeleton, ArcSkeleton>)
+    if (is_by_distance(blend, list))
+      return with_values(weight.term(common, sum.rho()), {angle_slope(list, i, part), Box3::inf});
   if (!weight.log) return term_of_all(part);
   return with_values(weight.term(common, sum.rho()), mean_within(part, width, sum.rho()));
 }
@@ -126,12 +142,15 @@ AngleBounds by_skeletons(const BlendField& blend, const SumBounds& sum, const Pa
 
 // Points and triangles have no direction.
 template <class Skeleton>
-SkeletonDirection direction_of(const BlendField& blend, const Skeleton& skeleton, const SumBounds::Part& part,
-                               const Vec3d& p) {
+SkeletonDirection direction_of(const BlendField& blend, const PrimitiveList<Skeleton>& list, std::size_t i,
+                               const SumBounds::Part& part, const Vec3d& p) {
+  const Skeleton& skeleton = list.skeletons[i];
   if constexpr (std::same_as<Skeleton, SegmentSkeleton>) {
     return {.mean = normalize(skeleton.to - skeleton.from).vec()};
   } else if constexpr (std::same_as<Skeleton, ArcSkeleton>) {
     const double f = part.sample.value;
+    if (is_by_distance(blend, list))
+      return {.mean = nearest_direction(skeleton, p, {.value = 1}).value, .turn = part.place_speed};
     if (!(f > 0)) return {.range = 2};
     return {.mean = arc_direction(skeleton, p, {blend.kernel, blend.degree, blend.kernel_shape}).value / f, .range = 2};
   } else {
@@ -156,7 +175,7 @@ Interval skeleton_range(const BlendField& blend) {
 std::optional<AngleBounds> by_directions(const BlendField& blend, const SumBounds& sum, const Parts& parts) {
   std::vector<StrandTerms> strands(blend.direction_bounds.size(), StrandTerms(sum.rho()));
   visit_parts(blend, parts, [&](const SumBounds::Part& part, const auto& list, std::size_t i) {
-    strands[list.strands[i]].add(part, direction_of(blend, list.skeletons[i], part, sum.center()));
+    strands[list.strands[i]].add(part, direction_of(blend, list, i, part, sum.center()));
   });
   std::vector<StrandBounds> ordered;
   double total = 0;
@@ -212,7 +231,7 @@ std::optional<AngleBounds> of_choices(const BlendField& blend, const SumBounds& 
 
 std::optional<AngleBounds> known_angles(const BlendField& blend, const SumBounds& sum) {
   const Interval f = sum.f();
-  if (sum.unbounded() || may_turn_fast(blend)) return {};
+  if (sum.unbounded()) return {};
   if (!(f.lo > vanishing && f.hi < 0.9 * field_ceiling)) return {};
   return sum.takeovers().empty() ? of_parts(blend, sum, sum.parts()) : of_choices(blend, sum);
 }

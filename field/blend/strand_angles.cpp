@@ -15,6 +15,7 @@ constexpr double inf = Box3::inf;
 // Of gamma = A c^8 + B, c = u_i . u_j, from how fast the directions turn. As these are of length 1, what turns one of
 // them changes c by no more than the sine of the angle between them.   [Zanni et al. 2015, eq. 16]
 MeanChange gamma_change(double span, double cosine, double sine, const MeanChange& a, const MeanChange& b) {
+  if (span == 0) return {};
   const double slope = (a.slope + b.slope) * sine, bend = a.bend + b.bend + 2 * a.slope * b.slope;
   const double c6 = integer_power(cosine, 6);
   return {span * 8 * c6 * cosine * slope, span * 8 * c6 * (7 * slope * slope + cosine * bend)};
@@ -145,7 +146,7 @@ FieldWeight StrandTerms::weight(const Vec3d& common, const std::vector<MeanTerm>
 
 bool StrandTerms::is_straight() const {
   return std::ranges::all_of(all_, [&](const Item& item) {
-    return item.direction.range == 0 && item.direction.mean == all_.front().direction.mean;
+    return item.direction.range == 0 && item.direction.turn == 0 && item.direction.mean == all_.front().direction.mean;
   });
 }
 
@@ -160,6 +161,11 @@ MeanChange StrandTerms::turn_of(const Vec3d& mean, std::vector<MeanTerm> terms) 
       continue;
     }
     terms[i].apart = length(direction.mean - mean) + middle_is_off;
+    if (direction.turn > 0) {
+      terms[i].value_slope = direction.turn;
+      terms[i].value_bend = inf;
+      continue;
+    }
     const MeanChange within = mean_within(*part, direction.range, rho_);
     terms[i].value_slope = within.slope;
     terms[i].value_bend = within.bend;

@@ -11,6 +11,7 @@ namespace marrow {
 struct SkeletonDirection {
   Vec3d mean{};
   double range = 0;
+  double turn = 0;  ///< by distance: how fast that of the nearest place turns, at most
 };
 
 /// A strand while its skeletons are added.

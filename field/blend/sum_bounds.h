@@ -68,7 +68,8 @@ class SumBounds {
     double steepest = Box3::inf, bent = Box3::inf;  ///< of |grad f| and |D^2 f| at most
     double distance = 0;  ///< above 0: of a sum of w |p - q|^-m with all q so far away, perhaps in four dimensions
     int m = 1;
-    Interval scaled{0, Box3::inf};  ///< least distance over the radius there, of primitives by distance
+    Interval scaled{0, Box3::inf};   ///< least distance over the radius there, of primitives by distance
+    double place_speed = Box3::inf;  ///< of arcs by distance: how fast the angle of the nearest place moves at most
   };
   /// All primitives of a blend whose angle is a mean over its skeletons or strands, in the order of visit_parts().
   const std::vector<Part>& parts() const { return parts_; }
@@ -76,6 +77,7 @@ class SumBounds {
   /// another, angles and directions jump.
   const std::vector<std::vector<std::size_t>>& takeovers() const { return takeovers_; }
 
+  const Box3& box() const { return box_; }
   const Vec3d& center() const { return center_; }
   /// Half the diagonal of the box.
   double rho() const { return rho_; }
