@@ -88,21 +88,21 @@ void narrow(SumBounds::Between& b, const SkeletonSample& middle, const Primitive
   b.S_by = S_by;
 }
 
-// e = min d / radius changes by rho / radius at most, f = k(e), |S| = |k'(e)|.
+// e = min d / radius changes by rho / radius at most, f = k(e), |S| = |k'(e)|. `middle`: of the middle.
 template <class Skeleton>
-SumBounds::Between distance_bounds(const Skeleton& s, const SumBounds& sum, const Kernel& kernel) {
+SumBounds::Between distance_bounds(const Skeleton& s, const SkeletonSample& middle, const SumBounds& sum,
+                                   const Kernel& kernel) {
   const double distance = distance_to(s, sum.center());
   if (kernel.family == KernelFamily::Compact && distance > (sum.rho() + kernel.shape * largest_radius(s)) * (1 + 1e-9))
     return {.f = 0, .log_slope = 0};  // its support is elsewhere
-  const SkeletonSample sample = distance_field<Derivatives::ScaleInvariant>(s, sum.center(), kernel);
-  const double f = sample.value, moved = sum.rho() / least_radius(s);
+  const double f = middle.value, moved = sum.rho() / least_radius(s);
   const Interval e = scaled_near(kernel, f, moved);
   const double turned = distance > sum.rho() ? turn(s, distance, sum.rho(), e) : inf;
   // S between its least and largest length, turned by as much.
   const auto give_S = [&](SumBounds::Between& b, double S_low, double S_high) {
     b.S_by = S_high;
-    if (!(turned < 1 && length(sample.si_gradient) > 0)) return;
-    b.S = normalize(sample.si_gradient) * (0.5 * (S_low + S_high));
+    if (!(turned < 1 && length(middle.si_gradient) > 0)) return;
+    b.S = normalize(middle.si_gradient) * (0.5 * (S_low + S_high));
     b.S_by = (0.5 * (S_high - S_low) + S_high * turned) * (1 + 1e-9);
   };
   if (kernel.family != KernelFamily::Inverse) {
@@ -130,15 +130,14 @@ double speed_of_place(const auto&, const Box3&) { return inf; }  // mean_angles.
 
 // The same for means, which ask for |grad f| = |S| / radius.
 template <class Skeleton>
-SumBounds::Part distance_part(const Skeleton& s, const SumBounds::Between& b, const SumBounds& sum,
-                              const Kernel& kernel) {
+SumBounds::Part distance_part(const Skeleton& s, const SkeletonSample& middle, const SumBounds::Between& b,
+                              const SumBounds& sum, const Kernel& kernel) {
   if (b.f.hi == 0) return {.steepest = 0, .bent = 0};
   const double longest = length(b.S) + b.S_by, least = least_radius(s);
-  const SkeletonSample sample = distance_field<Derivatives::First>(s, sum.center(), kernel);
-  return {.sample = sample,
+  return {.sample = middle,
           .f = b.f,
           .steepest = longest / least * (1 + 1e-9),
-          .scaled = scaled_near(kernel, sample.value, sum.rho() / least),
+          .scaled = scaled_near(kernel, middle.value, sum.rho() / least),
           .place_speed = speed_of_place(s, sum.box())};
 }
 
@@ -189,7 +188,8 @@ void SumBounds::keep_strand(const BlendField& blend, std::size_t first, std::spa
       continue;
     }
     candidates.push_back(parts_.size());
-    keep(distance_part(blend.distance_segments.skeletons[first + i], strand[i], *this, kernel));
+    const SegmentSkeleton& s = blend.distance_segments.skeletons[first + i];
+    keep(distance_part(s, distance_field<Derivatives::First>(s, center_, kernel), strand[i], *this, kernel));
   }
   if (candidates.size() > 1) takeovers_.push_back(std::move(candidates));
 }
@@ -198,12 +198,15 @@ void SumBounds::add_distances(const BlendField& blend) {
   const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
   const auto& list = blend.distance_segments;
   std::vector<Between> strand;
+  const auto bounds_of = [&](const SegmentSkeleton& s) {
+    return distance_bounds(s, distance_field<Derivatives::ScaleInvariant>(s, center_, kernel), *this, kernel);
+  };
   for (std::size_t first = 0; first < list.size(); first += strand.size()) {
-    strand = {distance_bounds(list.skeletons[first], *this, kernel)};
+    strand = {bounds_of(list.skeletons[first])};
     Largest all(strand.front(), first);
     for (std::size_t i = first + 1; !list.strands.empty() && i < list.size() && list.strands[i] == list.strands[first];
          ++i) {
-      strand.push_back(distance_bounds(list.skeletons[i], *this, kernel));
+      strand.push_back(bounds_of(list.skeletons[i]));
       all.add(strand.back(), i);
     }
     if (keeps_parts_) keep_strand(blend, first, strand);
@@ -211,13 +214,13 @@ void SumBounds::add_distances(const BlendField& blend) {
     add(all.bounds);
   }
   const auto add_one = [&](const auto& s) {
-    Between bounds = distance_bounds(s, *this, kernel);
+    const SkeletonSample middle = distance_field<Derivatives::First>(s, center_, kernel);
+    Between bounds = distance_bounds(s, middle, *this, kernel);
     std::optional<PrimitiveSlopes> slopes;
     if (bounds.f.hi == 0) slopes = PrimitiveSlopes{};
     else if (has_slopes() || !is_even(s)) slopes = distance_slopes(s, box_, kernel);
-    if (slopes && bounds.f.hi > 0 && !is_even(s))
-      narrow(bounds, distance_field<Derivatives::ScaleInvariant>(s, center_, kernel), *slopes, rho_);
-    if (keeps_parts_) keep(distance_part(s, bounds, *this, kernel));
+    if (slopes && bounds.f.hi > 0 && !is_even(s)) narrow(bounds, middle, *slopes, rho_);
+    if (keeps_parts_) keep(distance_part(s, middle, bounds, *this, kernel));
     if (has_slopes()) bounds.slopes = slopes;
     add(bounds);
   };
