@@ -220,6 +220,32 @@ TEST(TreeTracer, FindsThinBodiesFromFarAway) {
   }
 }
 
+// A film that is thinner than what a search tells may be met or not, but by all ends of a ray alike.
+TEST(TreeTracer, MeetsFilmsAlikeWhereverTheRayEnds) {
+  Random random(50);
+  FieldDescription field;
+  const auto tube = [&](double radius) {
+    return add(field, Cylinder{.from = {-0.7, 0, 0}, .to = {0.7, 0, 0}, .radius = radius, .potential = {}});
+  };
+  const FieldNodeId film = add(field, Difference{}, {tube(0.5 + 8e-12), tube(0.5)});
+  field.root = field.add({.what = Union{{film, tube(0.4998)}}, .where = {}});
+  const TreeTracer tracer = tracer_of(field);
+  int unlike = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3d from = normalize(random.vector(1)) * 4, to{random.between(-0.6, 0.6), random.between(-0.4, 0.4), 0};
+    Ray ray{.origin = from, .direction = normalize(to - from)};
+    const CrossingSearch found = traced(tracer, ray);
+    ASSERT_TRUE(found.t);
+    ray.t_max = *found.t - pow(10.0, random.between(-8, -3));
+    for (std::size_t cell = 0; cell < tracer.cell_count(); ++cell) {
+      CellLog any, first;
+      unlike +=
+          tracer.first_hit(cell, ray, true, any).has_value() != tracer.first_hit(cell, ray, false, first).has_value();
+    }
+  }
+  EXPECT_EQ(unlike, 0);
+}
+
 // However far from the origin a body stands, of it parts are told that are thin against it.
 TEST(TreeTracer, FindsThinShellsOfBodiesFarFromTheOrigin) {
   Random random(49);

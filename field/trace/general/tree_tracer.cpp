@@ -141,7 +141,8 @@ std::optional<TreeHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, b
   Interval t = clip(c.box, ray);
   log.enter = t.lo;
   const double nearly_ended = 0x1p-30 * std::max(std::fabs(t.hi), max_component(abs(ray.origin)));  // gaps are shorter
-  if (any) t.hi = std::min(t.hi, ray.t_max + nearly_ended);
+  const bool is_cut = any && ray.t_max + nearly_ended < t.hi;
+  if (is_cut) t.hi = ray.t_max + nearly_ended;
   Ray onward = ray;
   double stride = t.hi - t.lo;
   // of half the body, as the first cells are eighths
@@ -150,8 +151,9 @@ std::optional<TreeHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, b
     // Any crossing is told by a place behind it: not what is_covered() asks for.
     CellSearch search(onward, body, any && members_.empty(), log);
     const auto hit = c.part != nullptr ? search.in(*c.part, t) : search.in(tree_, c.member, t, nullptr);
-    // Where any crossing may lie behind the end of the ray, the first one tells.
-    if (any && hit && hit->t > ray.t_max - nearly_ended) return first_hit(cell, ray, false, log);
+    // Where any crossing may lie behind the end of the ray, the first one tells. So it does of a ray that ends in the
+    // cell: this search has looked at other places, and may have met a film that is thinner than gaps.
+    if (hit && (is_cut || (any && hit->t > ray.t_max - nearly_ended))) return first_hit(cell, ray, false, log);
     // A touch that may be there is one if the first hit is: that search may have looked at other places.
     if (any && !hit && log.undecided < Box3::inf) return first_hit(cell, ray, false, log);
     if (!hit || hit->t > ray.t_max) return {};
