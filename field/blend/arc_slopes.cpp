@@ -1,6 +1,5 @@
 // Derivatives of arcs by distance: where the nearest place may be, and how it moves.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>

@@ -7,14 +7,13 @@
 #include <numbers>
 
 #include "field/math/elementary.h"
+#include "field/number/functions.h"
 #include "field/skeleton/corners.h"
 #include "field/skeleton/parts.h"
 #include "field/skeleton/radii.h"
 
 namespace marrow {
 namespace {
-
-double square(double x) { return x * x; }
 
 // By which distances may differ from the middle.
 double slack_of(const auto& s, double rho) { return rho * (1 + 1e-9) + 1e-9 * least_radius(s); }
