@@ -59,6 +59,15 @@ struct ProbeCommand {
   bool materials = false;        ///< the weights of materials too
 };
 
+struct TraceCommand {
+  SceneInput scene;
+  std::filesystem::path rays;  ///< "-": standard input
+  bool occluded = false;       ///< only whether anything is in the way
+  int threads = 0;             ///< 0: all that the process may use
+  std::string isa;             ///< empty: the best of this machine
+  bool strict = false;
+};
+
 struct InfoCommand {
   SceneInput scene;
   bool json = false;
@@ -79,13 +88,14 @@ struct BenchCommand {
   std::optional<std::filesystem::path> write_to;  ///< a folder: scene files are written there and nothing is run
 };
 
-using Command =
-    std::variant<RenderCommand, CheckCommand, SchemaCommand, ProbeCommand, InfoCommand, SliceCommand, BenchCommand>;
+using Command = std::variant<RenderCommand, CheckCommand, SchemaCommand, ProbeCommand, TraceCommand, InfoCommand,
+                             SliceCommand, BenchCommand>;
 
 ExitCode run(const RenderCommand&);
 ExitCode run(const CheckCommand&);
 ExitCode run(const SchemaCommand&);
 ExitCode run(const ProbeCommand&);
+ExitCode run(const TraceCommand&);
 ExitCode run(const InfoCommand&);
 ExitCode run(const SliceCommand&);
 ExitCode run(const BenchCommand&);

@@ -73,6 +73,12 @@ void add_threads(CLI::App& app, int& threads) {
       ->type_name("N");
 }
 
+void add_isa(CLI::App& app, std::string& isa) {
+  app.add_option("--isa", isa,
+                 "Instruction set for tracing; what comes out is the same for all. Default: the widest of this machine")
+      ->check(CLI::IsMember({"sse4", "avx2", "avx512"}));
+}
+
 void describe(CLI::App& app, RenderCommand& c) {
   static const std::map<std::string, ProgressStyle> styles{{"auto", ProgressStyle::Auto},
                                                            {"bar", ProgressStyle::Bar},
@@ -91,9 +97,7 @@ void describe(CLI::App& app, RenderCommand& c) {
       ->type_name("x0,y0,x1,y1");
   app.add_option("--view", c.view, "View of the display for the PNG")->type_name("NAME");
   add_path(app, "--ocio", c.ocio, "OpenColorIO configuration; default: $OCIO, else the built-in one");
-  app.add_option("--isa", c.isa,
-                 "Instruction set for tracing; the picture is the same for all. Default: the widest of this machine")
-      ->check(CLI::IsMember({"sse4", "avx2", "avx512"}));
+  add_isa(app, c.isa);
   // For tests: none of these changes the picture.
   app.add_option("--embree-isa", c.embree_isa)->check(CLI::IsMember({"sse4", "avx2", "avx512"}))->group("");
   app.add_option("--tile", c.tile_size)->check(from_to(1, 4096))->group("");
@@ -139,6 +143,21 @@ void describe(CLI::App& app, ProbeCommand& c) {
          "--format", [](const std::string&) {}, "json, the only one so far")
       ->check(CLI::IsMember({"json"}));
   app.footer("Example:\n  echo 0 0 1.5 | marrow probe two_points.yaml --object pair --points - --format json");
+}
+
+void describe(CLI::App& app, TraceCommand& c) {
+  add_scene(app, c.scene);
+  add_path(app, "--rays", c.rays, "Rays, one 'ox oy oz dx dy dz [t_min t_max]' a line; - is standard input")
+      ->required();
+  app.add_flag("--occluded", c.occluded, "Only whether anything is in the way, which is sooner known");
+  add_threads(app, c.threads);
+  add_isa(app, c.isa);
+  app.add_flag("--strict", c.strict, "Exit 1 when a ray is not proved to have missed nothing");
+  app.footer(
+      "Example:\n  echo 0 0 9 0 0 -1 | marrow trace neuron.yaml --rays -\n"
+      "The answer is a JSON array in the order of the rays; surface is at origin + t direction.\n"
+      "A ray that begins inside a body meets the surface where it leaves.\n"
+      "SIGINT or SIGTERM: the array ends early and the exit code is 75.");
 }
 
 void describe(CLI::App& app, InfoCommand& c) {
@@ -284,6 +303,7 @@ std::variant<Command, ExitCode> parse_options(int argc, const char* const* argv)
   CheckCommand check;
   SchemaCommand schema;
   ProbeCommand probe;
+  TraceCommand trace;
   InfoCommand info;
   SliceCommand slice;
   BenchCommand bench;
@@ -298,6 +318,7 @@ std::variant<Command, ExitCode> parse_options(int argc, const char* const* argv)
       {add("info", "Tells what a scene is made of", info), [&] { return info; }},
       {add("slice", "Paints a field on an axis plane", slice), [&] { return slice; }},
       {add("probe", "Evaluates a field at points", probe), [&] { return probe; }},
+      {add("trace", "Traces rays and tells what they meet", trace), [&] { return trace; }},
       {add("schema", "Prints the scene format as JSON Schema", schema), [&] { return schema; }},
       {add("bench", "Measures itself and its peers on common scenes", bench), [&] { return bench; }},
   };

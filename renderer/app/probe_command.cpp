@@ -1,5 +1,4 @@
 // marrow probe: a field at given points, in numbers that can be read back without loss.
-#include <cmath>
 #include <fstream>
 #include <iostream>
 
@@ -10,6 +9,7 @@
 #include "field/skeleton/second_order.h"
 #include "renderer/app/commands.h"
 #include "renderer/app/files.h"
+#include "renderer/app/json_values.h"
 #include "renderer/app/point_list.h"
 #include "renderer/app/print.h"
 #include "renderer/app/report.h"
@@ -17,14 +17,6 @@
 
 namespace marrow {
 namespace {
-
-// JSON knows no infinity; 1e999 is one to every reader that takes numbers as doubles.
-std::string json(double x) {
-  if (std::isnan(x)) return "null";
-  if (std::isinf(x)) return x > 0 ? "1e999" : "-1e999";
-  return fmt::format("{:.17g}", x);
-}
-std::string json(const Vec3d& v) { return fmt::format("[{}, {}, {}]", json(v.x), json(v.y), json(v.z)); }
 
 std::string sample_of_field(const FieldProgram& program, const Vec3d& p) {
   const FieldSample s = evaluate(program, p);

@@ -1,15 +1,12 @@
 // marrow render: scene text -> description -> surfaces and light -> film -> files.
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <variant>
 
-#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_invoke.h>
 
-#include "field/math/instruction_sets.h"
 #include "renderer/app/commands.h"
 #include "renderer/app/environment.h"
 #include "renderer/app/files.h"
@@ -20,6 +17,7 @@
 #include "renderer/app/progress_line.h"
 #include "renderer/app/report.h"
 #include "renderer/app/scene_input.h"
+#include "renderer/app/tracing_setup.h"
 #include "renderer/geometry/build_surfaces.h"
 #include "renderer/scene/read_scene.h"
 #include "renderer/transport/render.h"
@@ -69,32 +67,10 @@ SurfaceOptions surface_options(const RenderCommand& command, const RenderSetting
           .samples = sample_count(settings)};
 }
 
-// 0: as many as the machine has.
-std::size_t most_threads(int asked) {
-  using tbb::global_control;
-  return asked > 0 ? static_cast<std::size_t>(asked)
-                   : global_control::active_value(global_control::max_allowed_parallelism);
-}
-
-// What the machine does not have is no mistake of the scene.
-Diagnostics missing_instruction_set(const RenderCommand& command) {
-  const auto sets = instruction_sets();
-  for (const std::string_view asked : {std::string_view(command.isa), std::string_view(command.embree_isa)})
-    if (!asked.empty() && std::ranges::find(sets, asked) == sets.end())
-      return {failure(fmt::format("--isa: this machine does not have {}, but {}", asked, fmt::join(sets, " and ")))};
-  return {};
-}
-
-// A problem with a place is the scene's; one without is the machine's.
-ExitCode exit_code_of_failed_build(const Diagnostics& why) {
-  const bool in_scene = std::any_of(why.begin(), why.end(), [](const auto& d) { return !d.where.file.empty(); });
-  return in_scene ? ExitCode::BadInput : ExitCode::Unavailable;
-}
-
 }  // namespace
 
 ExitCode run(const RenderCommand& command) {
-  if (const auto missing = missing_instruction_set(command); !missing.empty())
+  if (const auto missing = missing_instruction_set({command.isa, command.embree_isa}); !missing.empty())
     return report(missing, ExitCode::Unavailable);
   ReadRecord record;
   const auto scene = read_scene(command.scene.path, ReadOptions{.overrides = command.scene.overrides}, record);

@@ -75,6 +75,7 @@ class ProgramTest(unittest.TestCase):
         caught = 0
         while not caught >> (number - 1) & 1:
             time.sleep(0.01)
+            self.assertIsNone(process.poll(), "it ended before")
             status = pathlib.Path(f"/proc/{process.pid}/status").read_text(encoding="utf-8")
             caught = int(re.search(r"SigCgt:\s*(\w+)", status)[1], 16)
 

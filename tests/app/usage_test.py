@@ -9,7 +9,7 @@ class UsageTest(ProgramTest):
     def test_help_and_version_end_well(self):
         self.assertRegex(self.expect(0, "--version").stdout, r"^marrow \d+\.\d+\.\d+\n$")
         self.assertIn("render", self.expect(0, "--help").stdout)
-        for command in ("render", "check", "schema", "probe", "info", "slice", "bench"):
+        for command in ("render", "check", "schema", "probe", "trace", "info", "slice", "bench"):
             self.assertIn("Example", self.expect(0, command, "--help").stdout)
 
     def test_an_unknown_command_names_the_nearest(self):
@@ -78,7 +78,8 @@ class UsageTest(ProgramTest):
         self.expect(0, "render", self.write("point.yaml", POINT), "--seed", str(2**64 - 1))
 
     def test_input_that_is_not_there(self):
-        for command in (["render"], ["check"], ["info"], ["slice", "--plane", "z=0"], ["probe", "--points", "-"]):
+        for command in (["render"], ["check"], ["info"], ["slice", "--plane", "z=0"], ["probe", "--points", "-"],
+                        ["trace", "--rays", "-"]):
             with self.subTest(command):
                 self.assertIn("missing.yaml", self.expect(66, *command, "missing.yaml").stderr)
 

@@ -1,0 +1,115 @@
+"""Rays of a list, against closed forms: a ball of radius 1 at the origin, a plane at y = -1."""
+import json
+import math
+import signal
+import subprocess
+import unittest
+
+from marrow_program import POINT, PROGRAM, TWO_OBJECTS, ProgramTest
+
+OF_HIT = ["origin", "direction", "hit", "t", "position", "normal", "outside", "object", "material", "evaluations",
+          "certified"]
+OF_MISS = ["origin", "direction", "hit", "evaluations", "certified"]
+
+# Bounds tell little of it, so that rays take milliseconds.
+SLOW = """marrow: 1
+materials:
+  skin: {diffuse: {color: 0.5}}
+objects:
+  - name: rings
+    material: skin
+    field:
+      blend:
+        kernel: {compact: 3}
+        of:
+          - circle: {axes: [[1, 0, 0], [0, 1, 0]], radius: 0.3}
+          - circle: {center: [0.5, 0, 0], axes: [[1, 0, 0], [0, 0.2, 1]], radius: 0.3}
+"""
+
+
+def rows(rays):
+    return "".join(" ".join(repr(number) for number in ray) + "\n" for ray in rays)
+
+
+class TraceTest(ProgramTest):
+    def trace(self, scene, rays, *arguments):
+        return json.loads(self.expect(0, "trace", scene, "--rays", "-", *arguments, stdin=rows(rays)).stdout)
+
+    def ball(self):
+        return self.write("ball.yaml", POINT)
+
+    def test_a_ball_is_met_where_it_is(self):
+        hit, half, miss, inside = self.trace(
+            self.ball(), [(0, 0, 6, 0, 0, -1), (0, 0.6, 6, 0, 0, -2), (0, 1.01, 6, 0, 0, -1), (0, 0, 0.5, 0, 1, 0)])
+        self.assertEqual([list(answer) for answer in (hit, half, miss, inside)], [OF_HIT, OF_HIT, OF_MISS, OF_HIT])
+        self.assertTrue(all(answer["certified"] for answer in (hit, half, miss, inside)))
+        self.assertAlmostEqual(hit["t"], 5, 6)
+        self.assertEqual((hit["object"], hit["material"]), ("ball", "skin"))
+        self.assertAlmostEqual(half["t"], (6 - 0.8) / 2, 6)  # in lengths of the direction
+        for found, wanted in zip(half["normal"], (0, 0.6, 0.8)):
+            self.assertAlmostEqual(found, wanted, 6)
+        self.assertGreater(math.hypot(*half["outside"]), 1)
+        self.assertAlmostEqual(inside["t"], math.sqrt(0.75), 6)  # where it leaves
+
+    def test_the_range_of_t_counts_in_lengths_of_the_direction(self):
+        before, up_to, behind, endless = self.trace(
+            self.ball(), [(0, 0, 6, 0, 0, -2, 0, 2.4), (0, 0, 6, 0, 0, -2, 0, 2.6), (0, 0, 6, 0, 0, -2, 2.6, 9),
+                          (0, 0, 6, 0, 0, -2, 2.4, 1e308)])
+        self.assertEqual([answer["hit"] for answer in (before, up_to, behind, endless)], [False, True, True, True])
+        self.assertAlmostEqual(behind["t"], 3.5, 6)
+        done = self.expect(0, "trace", "ball.yaml", "--rays", "-", stdin="0 0 6 0 0 -1 5.5 inf\n")
+        self.assertAlmostEqual(json.loads(done.stdout)[0]["t"], 7, 6)
+
+    def test_all_objects_of_the_scene_are_met(self):
+        rays = [(0, 0, 6, 0, 0, -1), (2, 0, 6, 0, 0, -1), (9, 0, 0, 0, -1, 0), (9, 0, 0, 0, 1, 0)]
+        scene = self.write("two.yaml", TWO_OBJECTS)
+        self.assertEqual([a.get("object") for a in self.trace(scene, rays)], ["ball", "other", "floor", None])
+        self.assertEqual([a["occluded"] for a in self.trace(scene, rays, "--occluded")], [True, True, True, False])
+        self.assertEqual(self.trace(scene, []), [])
+
+    def test_bits_depend_neither_on_threads_nor_on_instruction_sets_nor_on_company(self):
+        scene = self.write("two.yaml", TWO_OBJECTS)
+        rays = [(x / 7 - 2, y / 7 - 2, 6, 0.01 * y, 0, -1) for x in range(40) for y in range(40)]
+        answers = self.trace(scene, rays)
+        self.assertEqual(self.trace(scene, rays, "-t", "1"), answers)
+        self.assertEqual([self.trace(scene, [ray])[0] for ray in rays[::197]], answers[::197])
+        for name in ("sse4", "avx2", "avx512"):
+            done = self.run_marrow("trace", scene, "--rays", "-", "--isa", name, stdin=rows(rays))
+            self.assertIn(done.returncode, (0, 69))  # 69: this machine does not have it
+            if done.returncode == 0:
+                self.assertEqual(json.loads(done.stdout), answers)
+
+    def test_what_is_not_proved_is_told(self):
+        far = rows([(0, 0, 1e12, 0, 0, -1), (0, 0, 6, 0, 0, -1)])
+        done = self.expect(0, "trace", self.ball(), "--rays", "-", stdin=far)
+        self.assertEqual([answer["certified"] for answer in json.loads(done.stdout)], [False, True])
+        self.assertIn("1 ray", done.stderr)
+        self.expect(1, "trace", "ball.yaml", "--rays", "-", "--strict", stdin=far)
+
+    def test_bad_lines_are_all_told(self):
+        lines = ["# ox oy oz dx dy dz", "0 0 6 0 0 -1", "0 0 6 0 0 0", "0 0 6 0 0 -1 2", "0 0 6 0 0 -1 -1 2",
+                 "0 0 6 0 0 -1 3 2", "0 0 six 0 0 -1", "0 0 6 0 0 -1 inf 2"]
+        self.write("rays.txt", "\n".join(lines))
+        done = self.expect(65, "trace", self.ball(), "--rays", "rays.txt")
+        for line in range(3, 9):
+            self.assertIn(f"rays.txt:{line}:", done.stderr)
+        self.assertNotIn("rays.txt:2:", done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertIn("gone.txt", self.expect(66, "trace", "ball.yaml", "--rays", "gone.txt").stderr)
+        self.expect(2, "trace", "ball.yaml")
+
+    def test_an_interrupted_list_is_still_json(self):
+        self.write("rays.txt", rows([(0.001 * k, 0.37, 4, 0, 0.01, -1) for k in range(200000)]))
+        process = subprocess.Popen([PROGRAM, "trace", self.write("rings.yaml", SLOW), "--rays", "rays.txt"],
+                                   cwd=self.folder, env=self.environment(), stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        self.wait_until_caught(process, signal.SIGINT)
+        process.send_signal(signal.SIGINT)
+        out, told = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75, told)
+        self.assertLess(len(json.loads(out)), 200000)
+        self.assertIn("of 200000 rays", told)
+
+
+if __name__ == "__main__":
+    unittest.main()
