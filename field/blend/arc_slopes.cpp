@@ -60,25 +60,58 @@ double nearest_angle(const ArcSkeleton& s, const Vec3d& p) {
   return angle + turn * std::floor((expected - angle) / turn + 0.5);
 }
 
-// The place farthest from a, on the way to b, that may be as near as `most`, a bound of e^2 over the box.
-double farthest_near(const ArcAndBox& seen, double a, double b, double most, int halvings) {
-  if (seen.scaled_squared({std::min(a, b), std::max(a, b)}).lo > most) return a;
-  if (halvings == 0) return b;
-  const double middle = 0.5 * (a + b), far = farthest_near(seen, middle, b, most, halvings - 1);
-  return far != middle ? far : farthest_near(seen, a, middle, most, halvings - 1);
+// At most sin(x), by 2e-4 at most, of x from 0 to pi / 2: its alternating series ended behind a negative term.
+double sine_at_least(double x) {
+  const double x2 = x * x;
+  return x * (1 - x2 / 6 * (1 - x2 / 20 * (1 - x2 / 42)));
 }
 
+// Which places of an arc may be nearest to some point of a box: those whose distance from its middle is at most half
+// its diagonal more than `most` radii, a bound of e all over the box. At the angle x from that of the middle the
+// squared distance is gap + 4 r major sin^2(x / 2).
+class NearPlaces {
+ public:
+  NearPlaces(const ArcAndBox& seen, const Box3& box, double most)
+      : seen_(seen), most_(most * (1 + 1e-12)), half_diagonal_(0.5 * length(box.size()) * (1 + 1e-12)) {
+    const double x = seen.x.middle(), y = seen.y.middle(), z = seen.z.middle(), r = std::hypot(x, y);
+    const double beside = r - seen.arc.major, slack = 1e-13 * (r * r + z * z + seen.arc.major * seen.arc.major);
+    from_ = atan2(y, x);
+    chord_ = 4 * r * seen.arc.major;
+    gap_ = z * z + beside * beside - slack;  // less some hundred times what is rounded
+  }
+  // The place farthest from a, on the way to b, that may be nearest.
+  double farthest(double a, double b, int halvings = 6) const {
+    if (!may_hold({std::min(a, b), std::max(a, b)})) return a;
+    if (halvings == 0) return b;
+    const double middle = 0.5 * (a + b), far = farthest(middle, b, halvings - 1);
+    return far != middle ? far : farthest(a, middle, halvings - 1);
+  }
+
+ private:
+  bool may_hold(const Interval& angles) const {
+    const double turn = 2 * std::numbers::pi;
+    // Of the turns of `from` that before the last angle and the next one are nearest.
+    const double before = from_ + turn * std::floor((angles.hi - from_) / turn);
+    const double away = std::max(0.0, std::min(angles.lo - before, before + turn - angles.hi) - 1e-14 * turn);
+    const double sine = sine_at_least(0.5 * away), reach = half_diagonal_ + most_ * seen_.radius(angles).hi;
+    return gap_ + chord_ * (sine * sine) <= reach * reach;
+  }
+
+  const ArcAndBox& seen_;
+  double most_, half_diagonal_;
+  double from_, chord_, gap_;
+};
+
 // Angles among which is the nearest place of every point of the box, in one piece with that of its middle.
-Interval near_angles(ArcAndBox& seen, const Vec3d& middle) {
-  constexpr int halvings = 6;
-  double at = nearest_angle(seen.arc, middle);
+Interval near_angles(ArcAndBox& seen, const Box3& box) {
+  double at = nearest_angle(seen.arc, box.center());
   if (seen.is_ring()) {
     seen.begin = at - std::numbers::pi;
     seen.end = at + std::numbers::pi;
   }
   at = std::clamp(at, seen.begin, seen.end);
-  const double most = seen.scaled_squared(at).hi;
-  return {farthest_near(seen, at, seen.begin, most, halvings), farthest_near(seen, at, seen.end, most, halvings)};
+  const NearPlaces near(seen, box, sqrt(seen.scaled_squared(at)).hi);
+  return {near.farthest(at, seen.begin), near.farthest(at, seen.end)};
 }
 
 // Where F has one sign all over these angles the last of them is nearest, or the first. Where it falls, one of them is,
@@ -117,7 +150,7 @@ Place place_among(const ArcAndBox& seen, const Interval& angles, bool is_real) {
 
 double place_speed(const ArcSkeleton& s, const Box3& box) {
   ArcAndBox seen(s, box);
-  const auto angles = narrowed(seen, near_angles(seen, box.center()));
+  const auto angles = narrowed(seen, near_angles(seen, box));
   if (!angles) return Box3::inf;
   if (angles->width() == 0 && (angles->lo == s.begin || angles->lo == s.end)) return 0;
   const double away = sqrt(seen.squared_distance(sincos(*angles))).hi, falls = -seen.fall_slope(*angles).hi;
@@ -127,7 +160,7 @@ double place_speed(const ArcSkeleton& s, const Box3& box) {
 
 std::optional<PrimitiveSlopes> distance_slopes(const ArcSkeleton& s, const Box3& box, const Kernel& kernel) {
   ArcAndBox seen(s, box);
-  const auto angles = narrowed(seen, near_angles(seen, box.center()));
+  const auto angles = narrowed(seen, near_angles(seen, box));
   if (!angles) return {};
   const double slack = 1e-12 * (std::fabs(s.begin) + std::fabs(s.end));
   const bool may_be_begin = !seen.is_ring() && angles->lo <= s.begin + slack;

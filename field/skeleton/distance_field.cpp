@@ -131,8 +131,9 @@ struct ArcCurve {
   struct Slope {
     double value, bend;
   };
-  Slope slope(double angle) const {
-    const auto [s, c] = sincos(angle / 2);
+  Slope slope(double angle) const { return slope(angle, sincos(angle / 2)); }
+  Slope slope(double angle, const SinCos& half) const {
+    const auto [s, c] = half;
     const double chord = 2 * view.r * view.major * s, d2 = view.gap() + 2 * chord * s, tau = radius(angle);
     return {chord * c * tau - d2 * radius_slope,
             view.r * view.major * (c * c - s * s) * tau - chord * c * radius_slope};
@@ -180,11 +181,14 @@ Nearest nearest_of(const ArcSkeleton& s, const Vec3d& p) {
   // falls to less than that share, or the minima are level with each other
   constexpr int parts = 64;
   const double step = (view.end - view.begin) / parts;
+  const SinCos half_step = sincos(step / 2);  // each half angle is the last one turned by it: some 64 ulp at the end
+  SinCos half = sincos(view.begin / 2);
   double low = view.begin;
-  bool falls = curve.slope(low).value < 0;
+  bool falls = curve.slope(low, half).value < 0;
   for (int i = 1; i <= parts; ++i) {
     const double high = i == parts ? view.end : view.begin + step * i;
-    const bool falls_there = curve.slope(high).value < 0;
+    half = {half.sin * half_step.cos + half.cos * half_step.sin, half.cos * half_step.cos - half.sin * half_step.sin};
+    const bool falls_there = curve.slope(high, half).value < 0;
     if (falls && !falls_there) best = nearer(best, curve.moving_at(minimum_between(curve, low, high)));
     low = high;
     falls = falls_there;
