@@ -23,7 +23,15 @@ class WavingAngle : public AlphaSource {
     const Vec3<HessianJet> v = variables_at(p);
     return 0.4 + 0.3 * sin(v.x * v.y + v.z);
   }
-  Interval bounds(const Box3&) const override { return {0.1, 0.7}; }
+  Interval bounds(const Box3& box) const override { return 0.4 + 0.3 * sincos(phase(box)).sin; }
+  Vec3<Interval> slopes(const Box3& box) const override {
+    const Interval steepest = 0.3 * sincos(phase(box)).cos;
+    return {steepest * side(box, 1), steepest * side(box, 0), steepest};
+  }
+
+ private:
+  static Interval side(const Box3& box, std::size_t i) { return {box.lower[i], box.upper[i]}; }
+  static Interval phase(const Box3& box) { return side(box, 0) * side(box, 1) + side(box, 2); }
 };
 
 template <class Fill>
