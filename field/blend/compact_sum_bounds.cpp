@@ -8,6 +8,7 @@
 #include "field/blend/sum_bounds.h"
 #include "field/blend/support_share.h"
 #include "field/skeleton/distance.h"
+#include "field/skeleton/parts.h"
 #include "field/skeleton/radii.h"
 #include "field/skeleton/skeletons.h"
 
@@ -93,38 +94,95 @@ SumBounds::Part smooth_part(const SkeletonSample& s, double steepest, double ben
   return {.sample = s, .f = {std::max(0.0, s.value - by), s.value + by}, .steepest = steep, .bent = bent};
 }
 
+// What is known of one skeleton, or of a part of it.
+struct Changes {
+  double steepest = 0, bent = 0;  // of |grad f| and |D^2 f|
+  double J = 0, S = 0;            // by which these may differ from those in the middle
+  double radius = 0;
+
+  void add(const Changes& part) {
+    steepest += part.steepest;
+    bent += part.bent;
+    J += part.J;
+    S += part.S;
+    radius = std::max(radius, part.radius);
+  }
+  void bound_by(const Changes& b) {
+    steepest = std::min(steepest, b.steepest);
+    bent = std::min(bent, b.bent);
+    J = std::min(J, b.J);
+    S = std::min(S, b.S);
+    radius = std::min(radius, b.radius);
+  }
+};
+
+// The support of a kernel and the ball of `rho` around the middle that is asked for.
+struct Asked {
+  const Profile& profile;
+  const Kernel& kernel;
+  Vec3d center;
+  double rho, across;
+  bool is_along;  // a straight way beside the skeleton
+
+  bool reaches(const auto& s) const { return distance_to(s, center) <= rho + kernel.shape * largest_radius(s); }
+};
+
+// f changes by sup |k'| over the least radius, times the share of the skeleton that the support can hold.
+Changes changes_of(const auto& s, const Asked& asked) {
+  const auto& [profile, kernel, center, rho, across, is_along] = asked;
+  const double reach = kernel.shape * largest_radius(s), least = least_radius(s), largest = largest_radius(s);
+  const double held = share_within(s, reach), bend = held_bend(profile, kernel, s, held);
+  Changes c{.steepest = steepest(profile, kernel) * held / least * (1 + 1e-9),
+            .bent = bend / (least * least),
+            .S = most_changed(profile, kernel, rho / least) * held * (largest / least),
+            .radius = largest};
+  if (bend < inf)
+    c.J = bend_changes(profile, kernel, across / least, share_within(s, reach + across),
+                       share_crossing(s, center, across, kernel.shape, is_along)) /
+          least;
+  return c;
+}
+
+// The same from parts whose radii differ less, of which those beyond their own support do not count: together they hold
+// no less, but what is thin is not taken for as long, and what is thick not for as steep.
+template <class Skeleton>
+void add_parts(const Skeleton& s, const Asked& asked, int cuts, Changes& sum) {
+  constexpr double even = 1.3;
+  if (!asked.reaches(s)) return;
+  if (cuts == 0 || largest_radius(s) <= even * least_radius(s)) {
+    sum.add(changes_of(s, asked));
+    return;
+  }
+  for (const Skeleton& part : parts(s)) add_parts(part, asked, cuts - 1, sum);
+}
+void add_parts(const PointSkeleton& s, const Asked& asked, int, Changes& sum) { sum.add(changes_of(s, asked)); }
+
 }  // namespace
 
-// f changes by rho sup |k'| times the share of the skeleton that the support can hold.
 void SumBounds::add_compact(const BlendField& blend) {
+  constexpr int most_cuts = 3;
   const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
   const auto all = [&](const auto& skeletons, int dimension, const auto& field) {
     const Profile profile(kernel, dimension);
-    const double steep = steepest(profile, kernel);
     for (const auto& s : skeletons) {
-      const double reach = kernel.shape * largest_radius(s);
-      if (distance_to(s, center_) > rho_ + reach) {
+      const auto along = beside(s, profile, kernel, center_, stretch());
+      const Asked asked{profile, kernel, center_, rho_, along ? along->across : rho_, along.has_value()};
+      if (!asked.reaches(s)) {
         keep({.steepest = 0, .bent = 0});
         continue;
       }
       const SkeletonSample sample = field(s);
-      const double held = share_within(s, reach), least = least_radius(s), largest = largest_radius(s);
-      const double per_length = steep * held / least * (1 + 1e-9);
-      const double bend = held_bend(profile, kernel, s, held);
-      if (keeps_parts_) keep(smooth_part(sample, per_length, bend / (least * least), rho_));
-      if (bend < inf) {
-        const auto along = beside(s, profile, kernel, center_, stretch());
-        const double across = along ? along->across : rho_;
-        const double crossed = share_crossing(s, center_, across, kernel.shape, along.has_value());
-        const double changes =
-            bend_changes(profile, kernel, across / least, share_within(s, reach + across), crossed) / least;
-        add(sample, Smooth{per_length, bend / (least * least), largest, across, changes, along ? along->ends_bent : 0,
-                           along ? along->ends_J_changes : 0});
+      Changes whole = changes_of(s, asked), by_parts;
+      add_parts(s, asked, most_cuts, by_parts);
+      whole.bound_by(by_parts);
+      if (keeps_parts_) keep(smooth_part(sample, whole.steepest, whole.bent, rho_));
+      if (whole.bent < inf) {
+        add(sample, Smooth{whole.steepest, whole.bent, whole.radius, asked.across, whole.J,
+                           along ? along->ends_bent : 0, along ? along->ends_J_changes : 0});
         continue;
       }
-      const double f = sample.value, by = per_length * rho_ + compact_error * f, longest = per_length * largest;
-      const double S_by =
-          most_changed(profile, kernel, rho_ / least) * held * (largest / least) + compact_error * longest;
+      const double f = sample.value, by = whole.steepest * rho_ + compact_error * f;
+      const double longest = whole.steepest * whole.radius, S_by = whole.S + compact_error * longest;
       const bool is_near = !(S_by < longest);
       add({.f = {std::max(0.0, f - by), f + by},
            .S = is_near ? Vec3d{} : sample.si_gradient,

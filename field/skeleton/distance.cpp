@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "field/math/box3.h"
+#include "field/math/elementary.h"
+#include "field/skeleton/parts.h"
 
 namespace marrow {
 
@@ -31,9 +34,13 @@ double distance_to(const TriangleSkeleton& s, const Vec3d& p) {
   return is_over ? std::fabs(dot(normalize(normal), p - v[0])) : nearest;
 }
 
+// That of its circle where p stands at one of its angles, else that of the nearer end.
 double distance_to(const ArcSkeleton& s, const Vec3d& p) {
   const Vec3d w = p - s.center;
-  const double x = dot(s.axis1, w), y = dot(s.axis2, w);
+  const double x = dot(s.axis1, w), y = dot(s.axis2, w), turn = 2 * std::numbers::pi;
+  const double turns = (atan2(y, x) - 0.5 * (s.begin + s.end)) / turn, from_middle = turns - std::floor(turns + 0.5);
+  if (std::fabs(from_middle) * turn > 0.5 * (s.end - s.begin))
+    return std::min(length(p - place_at(s, s.begin)), length(p - place_at(s, s.end)));
   const double across = std::sqrt(x * x + y * y) - s.major;
   const double height2 = std::max(0.0, length_squared(w) - x * x - y * y);
   return std::sqrt(across * across + height2);

@@ -8,7 +8,6 @@ namespace marrow {
 double distance_to(const PointSkeleton&, const Vec3d& p);
 double distance_to(const SegmentSkeleton&, const Vec3d& p);
 double distance_to(const TriangleSkeleton&, const Vec3d& p);
-/// A lower bound: the distance to the whole circle.
 double distance_to(const ArcSkeleton&, const Vec3d& p);
 
 }  // namespace marrow

@@ -18,6 +18,8 @@ namespace marrow {
 /// An interval, cut at a few places within it.
 class Cuts {
  public:
+  static constexpr std::size_t most_pieces = 11;
+
   Cuts(double begin, double end) : places_{begin, end} {}
   /// Not where it would leave a piece that is short beyond sense: there rounding decides how far the edge is.
   void add(double x) {
@@ -36,7 +38,7 @@ class Cuts {
   }
 
  private:
-  std::array<double, 12> places_{};  // begin, cuts and end, ascending
+  std::array<double, most_pieces + 1> places_{};  // begin, cuts and end, ascending
   std::size_t last_ = 1;
 };
 
@@ -101,7 +103,7 @@ inline Cuts edges_on_lines(const TriangleView& v, double R, double begin, double
 }
 
 /// The integral over all pieces, each by x = middle + half sin(angle), so that half powers of what vanishes at a cut
-/// are smooth. visit and agree as of integrate_adaptively(); `all` is then of all pieces.
+/// are smooth. visit and agree as of integrate_adaptively(), but the third that agree is told is of all pieces.
 template <class Sum, class Visit, class Agree>
 Sum integrate_between(const Cuts& cuts, const Visit& visit, const Agree& agree) {
   constexpr double right_angle = std::numbers::pi / 2;
@@ -111,18 +113,19 @@ Sum integrate_between(const Cuts& cuts, const Visit& visit, const Agree& agree) 
       visit(middle + half * sine, weight * half * cosine, part);
     };
   };
+  std::array<Sum, Cuts::most_pieces> wholes{};
   Sum estimate, sum;
-  const auto& rule = gauss_rule<20>;
+  std::size_t pieces = 0;
   cuts.for_each_piece([&](double a, double b) {
-    const auto node = node_of(a, b);
-    for (std::size_t i = 0; i < rule.nodes.size(); ++i)
-      node(right_angle * (2 * rule.nodes[i] - 1), 2 * right_angle * rule.weights[i], estimate);
+    wholes[pieces] = over_panel<Sum>(-right_angle, 2 * right_angle, node_of(a, b));
+    estimate += wholes[pieces++];
   });
-  const auto agree_in_all = [&](const Sum& coarse, const Sum& fine, const Sum& all) {
-    return agree(coarse, fine, all.value > estimate.value ? all : estimate);
+  const auto agree_in_all = [&](const Sum& coarse, const Sum& fine, const Sum& gathered) {
+    return agree(coarse, fine, gathered.value > estimate.value ? gathered : estimate);
   };
+  pieces = 0;
   cuts.for_each_piece([&](double a, double b) {
-    sum += integrate_adaptively<Sum>(-right_angle, right_angle, node_of(a, b), agree_in_all);
+    sum += integrate_adaptively<Sum>(-right_angle, right_angle, wholes[pieces++], node_of(a, b), agree_in_all);
   });
   return sum;
 }
