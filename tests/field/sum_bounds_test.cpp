@@ -1,0 +1,130 @@
+// Bounds of sums and of their derivatives, each by itself, against exact sums at places of boxes and of stretches.
+#include "field/blend/sum_bounds.h"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include "tests/field/random.h"
+
+namespace marrow {
+namespace {
+
+using test::Random;
+
+// How often something was bounded, by less than twice what it was in the middle.
+struct Told {
+  int gradients = 0, Js = 0;
+};
+
+void expect_in(const Interval& x, double found, double slack, const char* what) {
+  EXPECT_TRUE(x.lo - slack <= found && found <= x.hi + slack)
+      << what << ": " << found << " not in [" << x.lo << ", " << x.hi << "]";
+}
+
+void check_place(const SumBounds& sum, const SkeletonSample& at, const SkeletonSample& middle, double error,
+                 Told& told) {
+  const double slope_error = error * (1 + length(at.gradient)), bent = length(middle.si_jacobian.rows[0]);
+  expect_in(sum.f(), at.value, error * at.value, "f");
+  for (std::size_t i = 0; i < 3; ++i) {
+    expect_in(sum.S()[i], at.si_gradient[i], slope_error, "S");
+    if (!sum.has_slopes()) continue;
+    const Interval gradient = sum.gradient()[i];
+    expect_in(gradient, at.gradient[i], slope_error, "gradient");
+    told.gradients += gradient.width() < 2 * length(middle.gradient);
+    for (std::size_t j = 0; j < 3; ++j) {
+      expect_in(sum.J(i, j), at.si_jacobian.rows[i][j], error * (1 + bent), "J");
+      told.Js += sum.J(i, j).width() < 2 * bent;
+    }
+  }
+}
+
+// Along the stretch from -1 to 1.
+void check_stretch(const BlendField& blend, const Vec3d& center, const Vec3d& half, double error, Random& random) {
+  const Stretch way{half, normalize(half), 0};
+  const Box3 box = Box3{center, center}.padded(max_component(abs(half)));
+  const SumBounds sum(blend, box, Wanted::Slopes, &way);
+  for (int k = 0; k < 4; ++k) {
+    const auto at = sum_of_primitives<Derivatives::Second>(blend, center + half * random.between(-1, 1));
+    expect_in(sum.f(), at.value, error * at.value, "f of a stretch");
+    if (!sum.has_slopes()) continue;
+    expect_in(sum.f_along(), dot(at.gradient, way.direction), error * (1 + length(at.gradient)), "its slope");
+    for (std::size_t i = 0; i < 3; ++i)
+      expect_in(sum.S_along(i), dot(at.si_jacobian.rows[i], way.direction),
+                error * (1 + length(at.si_jacobian.rows[i])), "slope of S");
+  }
+}
+
+Told check_sums(const std::function<BlendField(Random&)>& draw, unsigned seed, int cases, double error) {
+  SCOPED_TRACE(seed);
+  Random random(seed);
+  Told told;
+  for (int i = 0; i < cases && !testing::Test::HasFailure(); ++i) {
+    const BlendField blend = draw(random);
+    const Vec3d center = random.vector(1.5);
+    const double half = pow(10, random.between(-5, -0.3));
+    const SumBounds sum(blend, Box3{center, center}.padded(half));
+    const auto middle = sum_of_primitives<Derivatives::Second>(blend, center);
+    for (int k = 0; k < 8; ++k)
+      check_place(sum, sum_of_primitives<Derivatives::Second>(blend, center + random.vector(half)), middle, error,
+                  told);
+    check_stretch(blend, center, random.vector(half), error, random);
+    EXPECT_FALSE(testing::Test::HasFailure()) << "case " << i << ", half size " << half << ", degree " << blend.degree;
+  }
+  return told;
+}
+
+BlendField compact_blend(Random& random, int least_degree) {
+  BlendField blend;
+  blend.degree = random.whole(least_degree, 9);
+  blend.kernel = KernelFamily::Compact;
+  blend.kernel_shape = random.between(1.2, 3);
+  return blend;
+}
+
+// A radius and one that is up to five times as large.
+double wider(Random& random, double radius) { return radius * random.between(1, 5); }
+
+TEST(SumBounds, HoldForTaperedSegmentsOfCompactSupport) {
+  const auto draw = [](Random& random) {
+    BlendField blend = compact_blend(random, 3);
+    SegmentSkeleton s = random.segment();
+    s.radius_to = wider(random, s.radius_from);
+    blend.segments.add(s, {});
+    return blend;
+  };
+  const Told told = check_sums(draw, 61, 1500, 1e-8);
+  EXPECT_GT(told.gradients, 8000);
+  EXPECT_GT(told.Js, 15000);
+}
+
+TEST(SumBounds, HoldForTaperedArcsOfCompactSupport) {
+  const auto draw = [](Random& random) {
+    BlendField blend = compact_blend(random, 3);
+    ArcSkeleton s = random.arc();
+    s.radius_to = wider(random, s.radius_from);
+    blend.arcs.add(s, {});
+    return blend;
+  };
+  const Told told = check_sums(draw, 62, 1000, 1e-8);
+  EXPECT_GT(told.gradients, 5000);
+  EXPECT_GT(told.Js, 10000);
+}
+
+TEST(SumBounds, HoldForTaperedTrianglesOfCompactSupport) {
+  const auto draw = [](Random& random) {
+    BlendField blend = compact_blend(random, 4);
+    TriangleSkeleton s = random.triangle();
+    for (const std::size_t k : {1u, 2u}) s.radii[k] = wider(random, s.radii[0]);
+    blend.triangles.add(s, {});
+    return blend;
+  };
+  const Told told = check_sums(draw, 63, 400, 1e-8);
+  EXPECT_GT(told.gradients, 2000);
+  EXPECT_GT(told.Js, 3000);
+}
+
+}  // namespace
+}  // namespace marrow
