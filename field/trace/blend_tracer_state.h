@@ -1,7 +1,9 @@
 // What a tracer of one blend is made of. For the sources of BlendTracer alone.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -11,6 +13,8 @@
 #include "field/trace/cells/cell_tree.h"
 #include "field/trace/cells/precision.h"
 #include "field/trace/cells/strands.h"
+#include "field/trace/curve/largest_gradient.h"
+#include "field/trace/curve/turned_curve.h"
 #include "field/trace/shares/angle_field.h"
 
 namespace marrow {
@@ -28,8 +32,16 @@ inline Correction correction_for(const BlendField& field) {
   return Correction(field.degree, alpha, field.cavity, field.projection);
 }
 
-inline IsoCurve iso_curve_for(const Correction& correction, const std::optional<AngleRange>& range) {
-  return range ? IsoCurve(correction, range->least, range->most) : IsoCurve(correction, correction.alpha());
+// Up to what |grad_S f| comes to, but for skeletons shorter than 1e-8 of their radius at degree 3.
+inline IsoCurve iso_curve_for(const BlendField& field, const Correction& correction,
+                              const std::optional<AngleRange>& range) {
+  constexpr double most_times = 128;
+  if (range) return {correction, range->least, range->most};
+  // Of these the curve is level behind the end of its table.
+  if (correction.projection() == Projection::Exact || correction.alpha() == std::numbers::pi / 2)
+    return {correction, correction.alpha()};
+  const double usual = usual_gradient(correction), largest = largest_gradient(field, critical_field_of(correction));
+  return {correction, correction.alpha(), UpToGradient{std::clamp(largest, usual, most_times * usual)}};
 }
 
 struct BlendTracer::State {
@@ -52,7 +64,7 @@ struct BlendTracer::State {
       : field(std::move(f)),
         correction(correction_for(field)),
         range(angle_range(field)),
-        iso(iso_curve_for(correction, range)),
+        iso(iso_curve_for(field, correction, range)),
         cutter(field.degree, iso.critical_field()),
         sources(cutter.cut(field), field.degree),
         angle_sources(

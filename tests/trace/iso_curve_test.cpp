@@ -25,6 +25,8 @@ std::vector<Setting> settings() {
   return all;
 }
 
+IsoTable usual_table(const Correction& c, double alpha) { return {c, alpha, UpToGradient{usual_gradient(c)}}; }
+
 struct Case {
   Setting setting;
   Correction correction;
@@ -142,7 +144,7 @@ TEST(IsoCurve, TableIsOnTheCurveAtItsKinkToo) {
   double largest = 0;
   for (const auto& [s, c, iso] : cases()) {
     if (!s.cavity || s.projection != Projection::Paper || s.alpha < 0 || s.alpha > 1.56) continue;
-    const IsoTable table(c, s.alpha);
+    const IsoTable table = usual_table(c, s.alpha);
     const auto in_branch = [&](int i) { return c.in_cavity_branch(table.point(i).x, table.point(i).y); };
     bool before = in_branch(0);
     for (int i = steep_entries; i + last_entries < table.size(); ++i) {
@@ -173,7 +175,7 @@ TEST(IsoCurve, LinesAreAsExactAsSums) {
   for (const Setting& s : {Setting{3, 0.2664, false}, Setting{3, 0.5, false}, Setting{4, 0}, Setting{6, -0.4},
                            Setting{3, -0.1}, Setting{4, 0.003}, Setting{4, 1.5}, Setting{20, 0.5}}) {
     const Correction c(s.degree, s.alpha, s.cavity, s.projection);
-    const IsoTable table(c, s.alpha);
+    const IsoTable table = usual_table(c, s.alpha);
     int rough = 0;
     for (int i = 0; i + 1 < table.size(); ++i) {
       const IsoTable::Point a = table.point(i), b = table.point(i + 1), p{0.5 * (a.x + b.x), 0.5 * (a.y + b.y)};
@@ -191,7 +193,7 @@ TEST(IsoCurve, BeyondItsEndAllIsInside) {
   for (const int n : {3, 8, 18, 20})
     for (int i = 0; i < 24; ++i) {
       const double alpha = random.between(-0.9, 1.55);
-      const IsoTable table(Correction(n, alpha, true, Projection::Paper), alpha);
+      const IsoTable table = usual_table(Correction(n, alpha, true, Projection::Paper), alpha);
       const IsoCurve::View view = table.view();
       if (table.point(table.size() - 2).x > 0.1) continue;  // ends elsewhere
       const float rise = (view.value[view.size - 1] - view.value[view.size - 2]) * view.inverse_step;
@@ -200,7 +202,7 @@ TEST(IsoCurve, BeyondItsEndAllIsInside) {
 }
 
 // The gradient of a disc is large against its field: a segment of a hundredth of its radius has some 7 (n - 1) at the
-// surface, where tables near the plain sum have ended.
+// surface, where tables near the plain sum have ended if nobody asked for more.
 TEST(IsoCurve, KnowsLargeGradientsNearTheSum) {
   Random random(37);
   for (const int n : {3, 4, 8})
@@ -222,6 +224,24 @@ TEST(IsoCurve, KnowsLargeGradientsNearTheSum) {
           if (alpha > 1.57079 && value < 0.99) { ASSERT_TRUE(iso.outside(0, x, y)) << "n=" << n << " y=" << y; }
         }
       }
+}
+
+TEST(IsoCurve, GoesOnUpToTheGradientAskedFor) {
+  for (const int n : {3, 4, 8})
+    for (const double alpha : {1.5, 1.54, 1.56, 1.57}) {
+      const Correction c(n, alpha, true, Projection::Paper);
+      const double largest = 10 * usual_gradient(c);
+      const IsoTable table(c, alpha, UpToGradient{largest});
+      double highest = 0;
+      for (int i = 0; i + 1 < table.size(); ++i) {
+        const auto [x, y] = table.point(i);
+        highest = std::max(highest, y);
+        // Toward the axis f = 0 the curve is as steep as a root.
+        if (x > 0.3) { EXPECT_NEAR(c.value(x, y), 1, 1e-5) << "n=" << n << " alpha=" << alpha << " y=" << y; }
+      }
+      EXPECT_TRUE(highest >= 0.99 * largest || table.point(table.size() - 2).x < 0.1)
+          << "n=" << n << " alpha=" << alpha;
+    }
 }
 
 TEST(IsoCurve, HoldsForAllAnglesOfARange) {

@@ -52,7 +52,7 @@ struct Curve {
   TurnedCurve turned;
   Curve(const Correction& like, double alpha, double turn)
       : correction(like.degree(), alpha, like.cavity(), like.projection()),
-        turned(correction, critical_field_of(correction), turn) {}
+        turned(correction, critical_field_of(correction), turn, UpToGradient{usual_gradient(correction)}) {}
   Curve(const Curve&) = delete;
   Curve& operator=(const Curve&) = delete;
 

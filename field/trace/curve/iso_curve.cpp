@@ -16,8 +16,11 @@ IsoTable end_of_range(const Correction& like, double alpha) {
 
 }  // namespace
 
-IsoCurve::IsoCurve(const Correction& correction, double alpha) : least_(alpha), most_(alpha) {
-  ends_.emplace_back(correction, alpha);
+IsoCurve::IsoCurve(const Correction& correction, double alpha)
+    : IsoCurve(correction, alpha, UpToGradient{usual_gradient(correction)}) {}
+
+IsoCurve::IsoCurve(const Correction& correction, double alpha, UpToGradient up_to) : least_(alpha), most_(alpha) {
+  ends_.emplace_back(correction, alpha, up_to);
 }
 
 IsoCurve::IsoCurve(const Correction& correction, double least, double most)

@@ -15,8 +15,9 @@ class IsoCurve {
  public:
   using View = IsoTable::View;
 
-  /// For one angle, in radians.
-  IsoCurve(const Correction&, double alpha);
+  /// For one angle, in radians, up to a G as iso_table.h says.
+  IsoCurve(const Correction&, double alpha, UpToGradient);
+  IsoCurve(const Correction&, double alpha);  ///< up to the usual one
   /// For all angles from `least` to `most`, 0 <= least < most, in radians, with the degree, cavity and projection of a
   /// correction.
   IsoCurve(const Correction&, double least, double most);

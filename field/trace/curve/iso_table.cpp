@@ -25,24 +25,33 @@ double on_lines(const std::vector<float>& table, double place) {
   return table[i] + (static_cast<double>(table[i + 1]) - table[i]) * (place - static_cast<double>(i));
 }
 
+// How many times as long as usual it is, as steps are to stay as short.
+int times_as_long(const TurnedCurve& curve, const Correction& correction) {
+  return std::max(1, static_cast<int>(std::ceil(curve.end() / usual_gradient(correction))));
+}
+
 }  // namespace
 
-IsoTable::IsoTable(const Correction& correction, double alpha)
-    : IsoTable(correction, alpha, turn_of(alpha), fewest_entries, most_entries) {}
+IsoTable::IsoTable(const Correction& correction, double alpha, UpToGradient up_to)
+    : IsoTable(correction, {correction, critical_field_of(correction), turn_of(alpha), up_to}, alpha,
+               {fewest_entries, most_entries}) {}
 
 IsoTable::IsoTable(const Correction& correction, double alpha, int entry_count)
-    : IsoTable(correction, alpha, std::max(alpha, 0.0), entry_count, entry_count) {}
+    : IsoTable(
+          correction,
+          {correction, critical_field_of(correction), std::max(alpha, 0.0), UpToGradient{usual_gradient(correction)}},
+          alpha, {entry_count, entry_count}) {}
 
-IsoTable::IsoTable(const Correction& correction, double alpha, double turn, int fewest, int most)
+IsoTable::IsoTable(const Correction& correction, const TurnedCurve& curve, double alpha, Entries entries)
     : critical_(critical_field_of(correction)), two_sided_(alpha < 0) {
-  const TurnedCurve curve(correction, critical_, turn);
+  const int times = times_as_long(curve, correction);
   sin_ = curve.sine();
   cos_ = curve.cosine();
   u_begin_ = curve.begin();
   ends_at_axis_ = curve.ends_at_axis();
   const auto kink = curve.kink();
   CurveEntries e;
-  for (int count = fewest; count <= most; count *= 2) {
+  for (int count = entries.fewest * times; count <= entries.most * times; count *= 2) {
     e = curve_entries(curve, correction, count, kink);
     if (e.rough_steps <= most_rough_steps) break;
   }
@@ -80,7 +89,7 @@ IsoTable::View IsoTable::view() const {
 }
 
 // All that comes behind the axis x = 0 is inside. Elsewhere V does not fall there: for the exact projection it is level
-// (C = 1 where v is that of the reference curve), for the paper's it rises; checked numerically.
+// (C = 1 where v is that of the reference curve), for the paper's it rises up to that axis; checked numerically.
 double IsoTable::beyond(const std::vector<float>& table) const {
   if (ends_at_axis_) return -std::numeric_limits<double>::infinity();
   return table.back();

@@ -22,7 +22,8 @@ class IsoTable {
   /// steps are so much shorter that an entry stands there: a line across it would be off by up to 2e-4, and C by up to
   /// 4e-5.
   /// `alpha` in radians, here and below.
-  IsoTable(const Correction&, double alpha);
+  /// Where the curve does not end before, it goes on up to the G asked for, with more entries for more of it.
+  IsoTable(const Correction&, double alpha, UpToGradient);
   /// An end of a range of angles, turned by alpha itself: some `entry_count` entries, so coarser than the one above.
   IsoTable(const Correction&, double alpha, int entry_count);
 
@@ -60,7 +61,10 @@ class IsoTable {
   bool two_sided() const { return two_sided_; }
 
  private:
-  IsoTable(const Correction&, double alpha, double turn, int fewest_entries, int most_entries);
+  struct Entries {
+    int fewest, most;
+  };
+  IsoTable(const Correction&, const TurnedCurve&, double alpha, Entries);
   double u_of(double x, double y) const { return y * sin_ - x * cos_; }
   double v_of(double x, double y) const { return x * sin_ + y * cos_; }
   double place(double u) const;

@@ -75,21 +75,21 @@ double TurnedLine::first_v() const {
   return v;
 }
 
-TurnedCurve::TurnedCurve(const Correction& correction, double critical_field, double turn)
+double usual_gradient(const Correction& correction) { return 6.0 * (correction.degree() - 1); }
+
+TurnedCurve::TurnedCurve(const Correction& correction, double critical_field, double turn, UpToGradient up_to)
     : correction_(correction), sin_(sin(turn)), cos_(cos(turn)) {
   if (turn >= std::numbers::pi / 2 - 1e-12) {
     sin_ = 1;
     cos_ = 0;
   }
   begin_ = -critical_field * cos_;
-  // The far end: where the curve nears the axis x = 0, or else (alpha near pi/2) where y is six times the gradient of
-  // the reference curve at the iso-value; no field of positive sources comes near either.
-  const double largest_y = 6.0 * (correction.degree() - 1);
-  const double y_end =
-      rising_root([&](double y) { return correction.value(TurnedLine::least_x, y) - 1; }, 0, largest_y);
+  // The far end: where the curve nears the axis x = 0, or else (alpha near pi/2) where y is as large as asked for.
+  const double y_end = rising_root([&](double y) { return correction.value(TurnedLine::least_x, y) - 1; }, 0,
+                                   usual_gradient(correction));
   // Without a turn u = -x ends at 0; the table goes a little further, so that x = 0 lies inside it.
-  end_ = sin_ > 0 ? std::min(y_end, largest_y) * sin_ : 0.01;
-  ends_at_axis_ = sin_ > 0 && y_end < largest_y;
+  end_ = sin_ > 0 ? std::min(y_end, up_to.largest) * sin_ : 0.01;
+  ends_at_axis_ = sin_ > 0 && y_end < up_to.largest;
 }
 
 std::optional<double> TurnedCurve::kink() const {

@@ -11,6 +11,15 @@ class Correction;
 /// The f with C(f, 0) = 1; infinite when there is none.
 double critical_field_of(const Correction&);
 
+/// Six times the G of the reference curve at the iso-value: fields of skeletons as long as a tenth of their radius do
+/// not come to more (largest_gradient.h).
+double usual_gradient(const Correction&);
+
+/// The G up to which a curve is wanted.
+struct UpToGradient {
+  double largest;
+};
+
 /// Points of the quarter plane x, y >= 0 on the line of given u.
 struct TurnedLine {
   double u, sin_theta, cos_theta;
@@ -26,8 +35,9 @@ struct TurnedLine {
 /// V(u) from where the curve meets the axis G = 0 on.
 class TurnedCurve {
  public:
-  /// Turned by `turn`, 0 to pi/2 radians. The correction must outlive the curve; its critical field must be finite.
-  TurnedCurve(const Correction&, double critical_field, double turn);
+  /// Turned by `turn`, 0 to pi/2 radians, up to a G. The correction must outlive the curve; its
+  /// critical field must be finite.
+  TurnedCurve(const Correction&, double critical_field, double turn, UpToGradient);
 
   double sine() const { return sin_; }
   double cosine() const { return cos_; }
