@@ -59,8 +59,8 @@ BlendBounds blend_bounds(const BlendField& blend, const SumBounds& sum, const An
   const Interval& alpha = angle.value;
   const Interval f = sum.f();
   if (sum.unbounded()) {
-    // Below alpha = 0 nothing is known of C without G.
-    if (alpha.lo < 0) return {{0, inf}, unknown};
+    // C is isotone in G and, at G = 0, in f. Without cavity it falls in f there below alpha = 0.
+    if (alpha.lo < 0 && !blend.cavity) return {{0, inf}, unknown};
     return {{corrected(blend, alpha, {f.lo, f.lo}, {0, 0}).lo, inf}, unknown};
   }
   const Vec3<Interval> S = sum.S();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "field/blend/least_field.h"
 #include "field/blend/sum_bounds.h"
 #include "field/skeleton/distance.h"
 #include "field/skeleton/radii.h"
@@ -104,8 +105,12 @@ void SumBounds::add_cani_hornus(const BlendField& blend) {
     const double distance = distance_to(s, center_);
     const InBall ball(s, center_, distance, rho_);
     if (!(distance > rho_) || !ball.is_finite()) {
-      add({.f = {0, inf}, .S_by = inf, .log_slope = inf});
-      keep({.f = {0, inf}});
+      const double least = std::min(s.radius_from, s.radius_to);
+      const SegmentSkeleton even{s.from, s.to, least, least};
+      const Interval f{least_field(even, Profile({blend.kernel, blend.degree, blend.kernel_shape}, 1), center_, rho_),
+                       inf};
+      add({.f = f, .S_by = inf, .log_slope = inf});
+      keep({.f = f});
       continue;
     }
     Between b = ball.bounds();

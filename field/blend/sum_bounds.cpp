@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "field/blend/least_field.h"
 #include "field/kernel/profile.h"
 #include "field/skeleton/distance.h"
 #include "field/skeleton/parts.h"
@@ -186,51 +187,17 @@ Interval SumBounds::J(std::size_t i, std::size_t j) const {
   return pad(J_.rows[i][j], S_second_ * rho_ + sample_error * std::fabs(J_.rows[i][j]) + J_error_) + between_.J[i][j];
 }
 
-namespace {
-
-constexpr int dimension(const TriangleSkeleton&) { return 2; }
-constexpr int dimension(const auto&) { return 1; }
-
-double farthest(const SegmentSkeleton& s, const Vec3d& p) { return std::max(length(p - s.from), length(p - s.to)); }
-double farthest(const ArcSkeleton& s, const Vec3d& p) {
-  return length(p - place_at(s, 0.5 * (s.begin + s.end))) + 0.5 * measure(s);
-}
-double farthest(const TriangleSkeleton& s, const Vec3d& p) {
-  return std::max({length(p - s.vertices[0]), length(p - s.vertices[1]), length(p - s.vertices[2])});
-}
-
-// Of each part the kernel of the largest distance over the least radius, over the largest radius. After so many cuts
-// parts are cut where they are longer than the box is away from them: there a small part tells what is inside of all
-// that lies around a large skeleton. Parts of `finest` radii do for that.
-template <class Skeleton>
-double least_field(const Skeleton& s, const Profile& profile, const Vec3d& center, double rho, int cuts) {
-  constexpr int most_cuts = 12;
-  constexpr double finest = 0.3;
-  const double far = farthest(s, center) + rho, size = extent(s), least = least_radius(s);
-  const bool is_long = 2 * size > far && size > finest * least;
-  if (cuts > 0 || (is_long && cuts > -most_cuts)) {
-    double sum = 0;
-    for (const Skeleton& part : parts(s)) sum += least_field(part, profile, center, rho, cuts - 1);
-    return sum;
-  }
-  const double radius = largest_radius(s), x = far / least;
-  const double over_radius = measure(s) / (dimension(s) == 2 ? radius * radius : radius);
-  return over_radius * profile.at(x * x).value / profile.normalisation() * (1 - 1e-9);
-}
-
-}  // namespace
-
 // Where the box comes near, a sample would tell little, and nothing at all on the skeleton.
 template <class Skeleton, class Sample>
 void SumBounds::add_integral(const BlendField& blend, const Skeleton& s, double distance, int m, const Sample& sample) {
-  if (rho_ < (dimension(s) == 2 ? 0.7 : 0.9) * distance) {
+  if (rho_ < (dimension_of(s) == 2 ? 0.7 : 0.9) * distance) {
     add(sample(), distance, largest_radius(s), m);
     return;
   }
   unbounded_ = true;
   log_slope_ = inf;
-  const Profile profile({blend.kernel, blend.degree, blend.kernel_shape}, dimension(s));
-  low_ += least_field(s, profile, center_, rho_, dimension(s) == 2 ? 2 : 3);
+  const Profile profile({blend.kernel, blend.degree, blend.kernel_shape}, dimension_of(s));
+  low_ += least_field(s, profile, center_, rho_);
 }
 
 void SumBounds::add_inverse(const BlendField& blend) {

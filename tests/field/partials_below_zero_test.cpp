@@ -71,6 +71,19 @@ TEST(BelowZero, BoundsHoldEveryValue) {
   EXPECT_GT(behind, 100'000);
 }
 
+// What the bounds of a box that holds a skeleton rest on.
+TEST(BelowZero, WithCavityNoFieldOrGradientBeyondGivesLess) {
+  Random random(20261131);
+  for (int i = 0; i < 200'000 && !HasFailure(); ++i) {
+    const Correction c(random.whole(3, 12), random.between(-1, 0), true, Projection::Paper);
+    const double least = std::exp(random.between(-6, 4)), at_least = c.value(least, 0);
+    const double f = least * std::exp(random.between(0, 1) < 0.5 ? 0 : random.between(0, 12));
+    const double G = ReferenceCurve(c.degree()).at(f) * std::exp(random.between(-12, 3));
+    EXPECT_GE(c.value(f, G), at_least * (1 - 1e-12))
+        << "degree " << c.degree() << " alpha " << c.alpha() << " f " << least << " .. " << f << " G " << G;
+  }
+}
+
 TEST(BelowZero, BoundsHoldThePartialsOfEveryPlace) {
   Random random(20261128);
   int known = 0;

@@ -8,6 +8,8 @@
 #include <iostream>
 #include <optional>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -201,6 +203,51 @@ TEST(TreeTracer, HasNoCellsInsideAnotherBody) {
   const std::size_t apart = box_and_ball(random, {10, 0, 0}, 3).tracer.cell_count();
   EXPECT_GT(of_ball, 0u);
   EXPECT_LT(of_ball, apart);
+}
+
+// A tube along z with another one across it.
+FieldTree crossing_tubes(const Alpha& alpha, SkeletonModel model) {
+  FieldDescription field;
+  Blend blend;
+  blend.alpha = alpha;
+  blend.model = model;
+  if (model == SkeletonModel::CaniHornus) blend.kernel.degree = 3;
+  const auto tube = [&](const SegmentSkeleton& s) {
+    Primitive one;
+    one.skeleton = s;
+    if (std::holds_alternative<AlphaPerSkeleton>(alpha)) one.alpha = -0.3;
+    blend.of.push_back(field.add({.what = one, .where = {}}));
+  };
+  tube({{0, 0, -1}, {0, 0, 1}, 0.2, 0.2});
+  tube({{-0.5, 0, 0.5}, {0.5, 0, 0.7}, 0.1, 0.05});
+  return tree_above(field, field.add({.what = std::move(blend), .where = {}}));
+}
+
+// Around a skeleton a field has no upper bound; its lower one says that all of it is inside, however near the ray is.
+TEST(TreeTracer, PassesAlongASkeletonInside) {
+  struct Rule {
+    Alpha alpha;
+    SkeletonModel model;
+  };
+  const std::vector<Rule> rules{{-0.2, SkeletonModel::Integral},
+                                {AlphaLocalContact{}, SkeletonModel::Integral},
+                                {AlphaPerSkeleton{}, SkeletonModel::Integral},
+                                {AlphaContact{}, SkeletonModel::CaniHornus}};
+  std::uint32_t evaluations = 0;
+  for (const auto& [alpha, model] : rules) {
+    const auto tracer = TreeTracer::make(crossing_tubes(alpha, model));
+    ASSERT_TRUE(tracer) << tracer.why()[0].message;
+    for (const double beside : {1e-8, 1e-6, 1e-5, 1e-4}) {
+      const Ray ray{.origin = {0, 0, -1.05}, .direction = normalize({beside, 0.3 * beside, 1})};
+      const CrossingSearch found = traced(*tracer, ray);
+      ASSERT_TRUE(found.t) << "rule " << alpha.index();
+      EXPECT_GT(*found.t, 2);
+      EXPECT_EQ(found.undecided, Box3::inf) << "rule " << alpha.index() << " at " << beside;
+      evaluations = std::max(evaluations, found.evaluations);
+    }
+  }
+  std::cout << "  at most " << evaluations << " evaluations\n";
+  EXPECT_LT(evaluations, 1000u);
 }
 
 // However many sizes away a ray begins, what it meets is as thin as where it stands tells.
