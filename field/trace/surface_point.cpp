@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "field/number/interval.h"
 #include "field/trace/blend_tracer_state.h"
 
 namespace marrow {
@@ -155,6 +156,30 @@ class PlacesAlong {
   std::array<double, most_together> step_;
 };
 
+// What is rounded of a place does not lead back to the hit.
+double rounding_of(const Vec3d& place) { return 4 * rounding::ulp * max_component(abs(place)); }
+bool is_resolved(const Vec3d& hit, const Vec3d& start) {
+  const double rounding = rounding_of(hit);
+  return length_squared(start - hit) > rounding * rounding;
+}
+
+// A place by the exact field, along the normal from the hit itself on, for what bounds do not prove or coordinates not
+// resolve: points of cones that are some roundings of their coordinates thick, far from the origin. None where C is not
+// below 1 within a way.
+std::optional<Vec3d> outside_by_exact_field(const BlendField& field, const Vec3d& hit, const UnitVec3& normal,
+                                            double way) {
+  constexpr double clearly = 1e-10;  // some hundred times what sums in double round
+  std::optional<Vec3d> barely;
+  for (double step = 0; step <= way; step = step > 0 ? 2 * step : rounding_of(hit)) {
+    const Vec3d place = hit + normal * step;
+    const double value = corrected_value(field, place);
+    if (value < 1 - clearly) return place;
+    if (value < 1 && !barely) barely = place;
+    if (step == 0 && hit == Vec3d{}) break;
+  }
+  return barely;
+}
+
 }  // namespace
 
 // How far to go from a hit by the field along its normal, if that proves a step.
@@ -212,10 +237,15 @@ void BlendTracer::surfaces_at(std::span<const SurfaceQuery> hits, std::span<Surf
   state_->kernels.surface_starts(rule, static_cast<int>(hits.size()), side_by_side);
   for (std::size_t lane = 0; lane < hits.size(); ++lane) {
     Hit{*hits[lane].block, hits[lane].position}.find_start(side_by_side, lane, found[lane]);
-    if (side_by_side.margin[lane] > 0) continue;
     SurfacePoint& at = found[lane];
-    if (const auto step = step_by_places(rule, hits[lane], at.normal, side_by_side.nearest[lane]))
-      at.outside = hits[lane].position + at.normal * *step;
+    const Vec3d& hit = hits[lane].position;
+    if (side_by_side.margin[lane] > 0 && is_resolved(hit, at.outside)) continue;
+    const float nearest = side_by_side.nearest[lane];
+    if (const auto step = step_by_places(rule, hits[lane], at.normal, nearest)) at.outside = hit + at.normal * *step;
+    if (is_resolved(hit, at.outside)) continue;
+    const double way =
+        std::max(static_cast<double>(longest_start * nearest) * hits[lane].block->half(), 16 * rounding_of(hit));
+    at.outside = outside_by_exact_field(state_->field, hit, at.normal, way).value_or(hit);
   }
 }
 

@@ -124,5 +124,33 @@ TEST(SurfacePoint, StartsBetweenLimbsThatTouchAreOutside) {
   EXPECT_GT(flat, 500);
 }
 
+// Cones that meet in a point, so far from the origin that coordinates do not resolve it: bounds prove steps that are
+// lost as they are added, and the places of hits are inside by what is rounded of them.
+TEST(SurfacePoint, StartsBesidePointsOfConesFarAwayAreOutside) {
+  Random random(83);
+  int hits = 0;
+  for (const double alpha : {0.0003, 0.8}) {
+    const Vec3d tip = random.vector(1) * 5e4, to = normalize(random.vector(1)) * 0.5;
+    BlendField blend;
+    blend.degree = 3;
+    blend.alpha = alpha;
+    blend.segments.add({tip - to, tip, 0.02, 1e-10}, {});
+    blend.segments.add({tip, tip + to, 1e-10, 0.02}, {});
+    const AllCells cells(blend);
+    for (int i = 0; i < 4000; ++i) {
+      const Vec3d at = tip + normalize(random.vector(1)) * pow(10, random.between(-10, -1));
+      const Vec3d eye = at + normalize(random.vector(1)) * random.between(0.5, 5);
+      const Ray ray{eye, normalize(at - eye)};
+      const auto hit = cells.first_hit(ray);
+      if (!hit) continue;
+      ++hits;
+      const Vec3d start = cells.tracer().surface_at(hit->cell, ray.at(hit->t)).outside;
+      EXPECT_LT(corrected_value(blend, start), 1)
+          << "alpha " << alpha << ", " << length(start - tip) << " from the tip";
+    }
+  }
+  EXPECT_GT(hits, 500);
+}
+
 }  // namespace
 }  // namespace marrow::test
