@@ -143,24 +143,33 @@ Changes changes_of(const auto& s, const Asked& asked) {
   return c;
 }
 
+bool is_nearly_even(const auto& s) { return largest_radius(s) <= 1.3 * least_radius(s); }
+
 // The same from parts whose radii differ less, of which those beyond their own support do not count: together they hold
 // no less, but what is thin is not taken for as long, and what is thick not for as steep.
 template <class Skeleton>
 void add_parts(const Skeleton& s, const Asked& asked, int cuts, Changes& sum) {
-  constexpr double even = 1.3;
   if (!asked.reaches(s)) return;
-  if (cuts == 0 || largest_radius(s) <= even * least_radius(s)) {
+  if (cuts == 0 || is_nearly_even(s)) {
     sum.add(changes_of(s, asked));
     return;
   }
   for (const Skeleton& part : parts(s)) add_parts(part, asked, cuts - 1, sum);
 }
-void add_parts(const PointSkeleton& s, const Asked& asked, int, Changes& sum) { sum.add(changes_of(s, asked)); }
+
+Changes changes_at_most(const auto& s, const Asked& asked) {
+  constexpr int most_cuts = 3;
+  Changes changes = changes_of(s, asked), by_parts;
+  if (is_nearly_even(s)) return changes;
+  add_parts(s, asked, most_cuts, by_parts);
+  changes.bound_by(by_parts);
+  return changes;
+}
+Changes changes_at_most(const PointSkeleton& s, const Asked& asked) { return changes_of(s, asked); }
 
 }  // namespace
 
 void SumBounds::add_compact(const BlendField& blend) {
-  constexpr int most_cuts = 3;
   const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
   const auto all = [&](const auto& skeletons, int dimension, const auto& field) {
     const Profile profile(kernel, dimension);
@@ -172,17 +181,15 @@ void SumBounds::add_compact(const BlendField& blend) {
         continue;
       }
       const SkeletonSample sample = field(s);
-      Changes whole = changes_of(s, asked), by_parts;
-      add_parts(s, asked, most_cuts, by_parts);
-      whole.bound_by(by_parts);
-      if (keeps_parts_) keep(smooth_part(sample, whole.steepest, whole.bent, rho_));
-      if (whole.bent < inf) {
-        add(sample, Smooth{whole.steepest, whole.bent, whole.radius, asked.across, whole.J,
+      const Changes changes = changes_at_most(s, asked);
+      if (keeps_parts_) keep(smooth_part(sample, changes.steepest, changes.bent, rho_));
+      if (changes.bent < inf) {
+        add(sample, Smooth{changes.steepest, changes.bent, changes.radius, asked.across, changes.J,
                            along ? along->ends_bent : 0, along ? along->ends_J_changes : 0});
         continue;
       }
-      const double f = sample.value, by = whole.steepest * rho_ + compact_error * f;
-      const double longest = whole.steepest * whole.radius, S_by = whole.S + compact_error * longest;
+      const double f = sample.value, by = changes.steepest * rho_ + compact_error * f;
+      const double longest = changes.steepest * changes.radius, S_by = changes.S + compact_error * longest;
       const bool is_near = !(S_by < longest);
       add({.f = {std::max(0.0, f - by), f + by},
            .S = is_near ? Vec3d{} : sample.si_gradient,

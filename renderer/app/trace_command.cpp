@@ -96,7 +96,7 @@ Outcome trace_and_print(const Surfaces& surfaces, std::span<const ListedRay> ray
   Outcome outcome;
   std::vector<Answer> answers;
   say("[");
-  for (; outcome.is_whole && outcome.traced < rays.size();) {
+  while (outcome.traced < rays.size()) {
     const auto now = rays.subspan(outcome.traced, std::min(batch, rays.size() - outcome.traced));
     answers.assign(now.size(), {});
     outcome.is_whole = trace_all(surfaces, now, occlusion, answers);
