@@ -32,16 +32,17 @@ inline Correction correction_for(const BlendField& field) {
   return Correction(field.degree, alpha, field.cavity, field.projection);
 }
 
-// Up to what |grad_S f| comes to, but for skeletons shorter than 1e-8 of their radius at degree 3.
+// Up to what |grad_S f| comes to, but for skeletons shorter than 1e-8 of their radius at degree 3, 1e-5 where the angle
+// varies.
 inline IsoCurve iso_curve_for(const BlendField& field, const Correction& correction,
                               const std::optional<AngleRange>& range) {
-  constexpr double most_times = 128;
-  if (range) return {correction, range->least, range->most};
+  constexpr double most_times = 128, most_times_of_ranges = 16;
+  const double usual = usual_gradient(correction), largest = largest_gradient(field);
+  const auto up_to = [&](double most) { return UpToGradient{std::clamp(largest, usual, most * usual)}; };
   // Of these the curve is level behind the end of its table.
-  if (correction.projection() == Projection::Exact || correction.alpha() == std::numbers::pi / 2)
-    return {correction, correction.alpha()};
-  const double usual = usual_gradient(correction), largest = largest_gradient(field, critical_field_of(correction));
-  return {correction, correction.alpha(), UpToGradient{std::clamp(largest, usual, most_times * usual)}};
+  const bool is_level = correction.projection() == Projection::Exact || correction.alpha() == std::numbers::pi / 2;
+  if (range) return {correction, range->least, range->most, up_to(is_level ? 1 : most_times_of_ranges)};
+  return {correction, correction.alpha(), up_to(is_level ? 1 : most_times)};
 }
 
 struct BlendTracer::State {

@@ -21,7 +21,11 @@ namespace {
 class TablesOfAngles {
  public:
   TablesOfAngles(const Correction& like, double least, double most)
-      : curves_(like, least, most), tables_(curves_.tables()), like_(like), least_(least), most_(most) {}
+      : curves_(like, least, most, UpToGradient{usual_gradient(like)}),
+        tables_(curves_.tables()),
+        like_(like),
+        least_(least),
+        most_(most) {}
 
   int steps() const { return tables_.count; }
   int entries(int step) const { return static_cast<int>(tables_.last[step]); }

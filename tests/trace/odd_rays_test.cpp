@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -70,6 +71,33 @@ TEST(OddRays, MeetSkeletonsMuchShorterThanTheirRadius) {
       }
 }
 
+// The same where each skeleton has an angle of its own.
+TEST(OddRays, MeetShortSkeletonsWithAnglesOfTheirOwn) {
+  Random random(306);
+  for (const int n : {3, 4})
+    for (const auto& [own, other] : {std::pair{1.5, 1.2}, {1.54, 1.5}, {1.56, 1.2}, {1.57, 1.54}})
+      for (const double part : {1e-3, 1e-4}) {
+        BlendField field;
+        field.degree = n;
+        field.alpha_per_skeleton = true;
+        field.segments.add({{0, 0, 0}, {part, 0, 0}, 1, 1}, {});
+        field.segments.add({{0, 0, 9}, {1, 0, 9}, 0.1, 0.1}, {});
+        field.segments.alphas = {own, other};
+        const auto tracer = std::move(*BlendTracer::make(field, {}));
+        int hits = 0;
+        for (int i = 0; i < 20; ++i) {
+          const Vec3d eye = random_direction(random) * 3.0;
+          const Ray ray{eye, normalize(random.vector(0.02) - eye)};
+          const auto t = first_hit(*tracer, ray);
+          if (!t) continue;
+          ++hits;
+          EXPECT_NEAR(corrected_value(field, ray.at(*t)), 1, 1e-5)
+              << "n=" << n << " alpha=" << own << ", " << other << " length " << part;
+        }
+        EXPECT_GT(hits, 10) << "n=" << n << " alpha=" << own << ", " << other << " length " << part;
+      }
+}
+
 TEST(OddRays, HaveBoundsOfTheGradientWhereTheyMeetShortSkeletons) {
   Random random(305);
   double most = 0;
@@ -85,7 +113,7 @@ TEST(OddRays, HaveBoundsOfTheGradientWhereTheyMeetShortSkeletons) {
       const double middle = 0.5 * (low + high);
       (corrected_value(field, direction * middle) > 1 ? low : high) = middle;
     }
-    const double found = evaluate(field, direction * high).si_norm, bound = largest_gradient(field, 1);
+    const double found = evaluate(field, direction * high).si_norm, bound = largest_gradient(field);
     EXPECT_LE(found, bound * (1 + 1e-9)) << "degree " << field.degree << " length " << part;
     most = std::max(most, found / bound);
   }

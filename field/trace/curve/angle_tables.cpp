@@ -50,9 +50,9 @@ struct Quadratic {
 struct Curve {
   Correction correction;
   TurnedCurve turned;
-  Curve(const Correction& like, double alpha, double turn)
+  Curve(const Correction& like, double alpha, double turn, UpToGradient up_to)
       : correction(like.degree(), alpha, like.cavity(), like.projection()),
-        turned(correction, critical_field_of(correction), turn, UpToGradient{usual_gradient(correction)}) {}
+        turned(correction, critical_field_of(correction), turn, up_to) {}
   Curve(const Curve&) = delete;
   Curve& operator=(const Curve&) = delete;
 
@@ -74,18 +74,19 @@ class Step {
   std::vector<Quadratic> value, slope;
   std::vector<double> below;
 
-  Step(const Correction& like, double middle, double width) {
+  Step(const Correction& like, double middle, double width, UpToGradient up_to) {
     const double turn = std::max(middle, least_turn);
-    const Curve curves[3] = {{like, middle - width / 2, turn}, {like, middle, turn}, {like, middle + width / 2, turn}};
+    const auto at = [&](double s) { return Curve(like, middle + s * width, turn, up_to); };
+    const Curve curves[3] = {at(-0.5), at(0), at(0.5)};
     sine = curves[1].turned.sine();
     cosine = curves[1].turned.cosine();
     find_places(curves);
     find_values(curves);
     below.assign(value.size(), 0);
     probe(curves[1], 0, {0.25, 0.5, 0.75});
-    for (const double s : {-0.25, 0.25}) probe(Curve(like, middle + s * width, turn), s, {0, 0.5});
+    for (const double s : {-0.25, 0.25}) probe(at(s), s, {0, 0.5});
     for (const double s : {-0.45, -0.35, -0.15, -0.05, 0.05, 0.15, 0.35, 0.45})
-      probe(Curve(like, middle + s * width, turn), s, {0, 0.25, 0.5, 0.75}, first_entries);
+      probe(at(s), s, {0, 0.25, 0.5, 0.75}, first_entries);
     for (std::size_t k = 0; k < 3; ++k) leave_end_uncertain(curves[k].turned, 0.5 * (static_cast<double>(k) - 1));
   }
 
@@ -101,7 +102,8 @@ class Step {
     bool ends_near = true;
     for (std::size_t k = 0; k < 3; ++k) {
       const TurnedCurve& c = curves[k].turned;
-      lengths[k] = (c.end() - c.begin()) / (fewest_entries - 1);
+      const double times = std::max(1.0, std::ceil(c.end() / usual_gradient(curves[k].correction)));
+      lengths[k] = (c.end() - c.begin()) / (times * fewest_entries - 1);
       ends_near = ends_near && c.ends_at_axis() && c.end() < farthest_end * (curves[k].correction.degree() - 1);
     }
     const double longest = std::max({lengths[0], lengths[1], lengths[2]});
@@ -205,13 +207,13 @@ void add(const Quadratic& q, double last, std::vector<float>& to) {
 
 }  // namespace
 
-AngleCurves::AngleCurves(const Correction& correction, double least, double most) {
+AngleCurves::AngleCurves(const Correction& correction, double least, double most, UpToGradient up_to) {
   const double steps = std::max<double>(fewest_steps, std::ceil((most - least) / largest_step));
   const double width = (most - least) / steps;
   count_ = static_cast<int>(steps);
   std::vector<std::optional<Step>> made(static_cast<std::size_t>(count_));
   tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t k) {
-    made[k].emplace(correction, least + (static_cast<double>(k) + 0.5) * width, width);
+    made[k].emplace(correction, least + (static_cast<double>(k) + 0.5) * width, width, up_to);
   });
   std::size_t stride = 0;
   for (const auto& step : made) stride = std::max(stride, step->value.size());

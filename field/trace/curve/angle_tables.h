@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "field/trace/curve/turned_curve.h"
+
 namespace marrow {
 
 class Correction;
@@ -24,8 +26,9 @@ struct AngleTables {
 class AngleCurves {
  public:
   AngleCurves() = default;
-  /// 0 <= least < most, in radians; degree, cavity and projection are those of the correction.
-  AngleCurves(const Correction&, double least, double most);
+  /// 0 <= least < most, in radians; degree, cavity and projection are those of the correction. Up to a G, as
+  /// iso_table.h says.
+  AngleCurves(const Correction&, double least, double most, UpToGradient);
   AngleCurves(AngleCurves&&) = default;  // tables stay where they are
   AngleCurves& operator=(AngleCurves&&) = default;
 

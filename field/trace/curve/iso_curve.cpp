@@ -24,7 +24,10 @@ IsoCurve::IsoCurve(const Correction& correction, double alpha, UpToGradient up_t
 }
 
 IsoCurve::IsoCurve(const Correction& correction, double least, double most)
-    : least_(least), most_(most), angles_(correction, least, most) {
+    : IsoCurve(correction, least, most, UpToGradient{usual_gradient(correction)}) {}
+
+IsoCurve::IsoCurve(const Correction& correction, double least, double most, UpToGradient up_to)
+    : least_(least), most_(most), angles_(correction, least, most, up_to) {
   for (const double alpha : {least, most}) ends_.push_back(end_of_range(correction, alpha));
 }
 

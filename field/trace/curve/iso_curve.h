@@ -20,7 +20,8 @@ class IsoCurve {
   IsoCurve(const Correction&, double alpha);  ///< up to the usual one
   /// For all angles from `least` to `most`, 0 <= least < most, in radians, with the degree, cavity and projection of a
   /// correction.
-  IsoCurve(const Correction&, double least, double most);
+  IsoCurve(const Correction&, double least, double most, UpToGradient);
+  IsoCurve(const Correction&, double least, double most);  ///< up to the usual one
 
   IsoCurve(IsoCurve&&) = default;  // views stay where they are
 

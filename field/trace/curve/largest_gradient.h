@@ -5,9 +5,8 @@ namespace marrow {
 
 struct BlendField;
 
-/// Where no skeleton alone has more than `field`, of segments of the integral model under the inverse kernel; points
-/// have less. The shorter a segment is against its radius, the nearer to it is the surface. A bound for even radii, for
-/// others an estimate.
-double largest_gradient(const BlendField&, double field);
+/// Of segments of the integral model under the inverse kernel; points have less. The shorter a segment is against its
+/// radius, the nearer to it is the surface. A bound for even radii, for others an estimate.
+double largest_gradient(const BlendField&);
 
 }  // namespace marrow
