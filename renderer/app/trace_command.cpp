@@ -1,6 +1,5 @@
 // marrow trace: rays of a list, each with what it meets, in numbers that can be read back without loss.
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
 #include <fstream>
 #include <iostream>
@@ -34,6 +33,7 @@ struct Answer {
   std::optional<SurfaceHit> hit;
   RayRecord record;
   std::uint8_t is_occluded = 0;
+  bool is_known = false;  // not where an interrupt came first
 };
 
 // Of the rays that go together. Beside blends rays through the same cells gain by company; trees take rays one by one,
@@ -46,27 +46,22 @@ void trace(const Surfaces& surfaces, std::span<const ListedRay> listed, bool occ
   if (occlusion) {
     std::vector<std::uint8_t> hidden(rays.size());
     surfaces.occluded(rays, hidden);
-    for (std::size_t i = 0; i < rays.size(); ++i) answers[i].is_occluded = hidden[i];
+    for (std::size_t i = 0; i < rays.size(); ++i) answers[i] = {{}, {}, hidden[i], true};
     return;
   }
   std::vector<std::optional<SurfaceHit>> hits(rays.size());
   std::vector<RayRecord> records(rays.size());
   surfaces.first_hits(rays, hits, records);
-  for (std::size_t i = 0; i < rays.size(); ++i) answers[i] = {hits[i], records[i]};
+  for (std::size_t i = 0; i < rays.size(); ++i) answers[i] = {hits[i], records[i], 0, true};
 }
 
-// False: interrupted, and some rays have no answer.
-bool trace_all(const Surfaces& surfaces, std::span<const ListedRay> rays, bool occlusion, std::span<Answer> answers) {
-  std::atomic<bool> is_whole = true;
+void trace_all(const Surfaces& surfaces, std::span<const ListedRay> rays, bool occlusion, std::span<Answer> answers) {
   const auto trace_group = [&](const tbb::blocked_range<std::size_t>& group) {
-    if (interruption_flag()) is_whole = false;
-    else
-      trace(surfaces, rays.subspan(group.begin(), group.size()), occlusion,
-            answers.subspan(group.begin(), group.size()));
+    if (interruption_flag()) return;
+    trace(surfaces, rays.subspan(group.begin(), group.size()), occlusion, answers.subspan(group.begin(), group.size()));
   };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), group_of(surfaces)), trace_group,
                     tbb::simple_partitioner{});
-  return is_whole;
 }
 
 std::string text_of(const SurfaceHit& hit, const ListedRay& ray, const SceneDescription& scene) {
@@ -84,10 +79,8 @@ std::string text_of(const Answer& answer, const ListedRay& ray, const SceneDescr
          fmt::format(R"(, "evaluations": {}, "certified": {}}})", answer.record.evaluations, answer.record.certified);
 }
 
-// What the rays of a list have come to.
 struct Outcome {
-  std::size_t traced = 0, uncertified = 0;
-  bool is_whole = true;
+  std::size_t traced = 0, uncertified = 0;  // of all that are asked for, up to an interrupt
 };
 
 Outcome trace_and_print(const Surfaces& surfaces, std::span<const ListedRay> rays, const SceneDescription& scene,
@@ -96,12 +89,11 @@ Outcome trace_and_print(const Surfaces& surfaces, std::span<const ListedRay> ray
   Outcome outcome;
   std::vector<Answer> answers;
   say("[");
-  while (outcome.traced < rays.size()) {
+  while (outcome.traced < rays.size() && !interruption_flag()) {
     const auto now = rays.subspan(outcome.traced, std::min(batch, rays.size() - outcome.traced));
     answers.assign(now.size(), {});
-    outcome.is_whole = trace_all(surfaces, now, occlusion, answers);
-    if (!outcome.is_whole) break;
-    for (std::size_t i = 0; i < now.size(); ++i, ++outcome.traced) {
+    trace_all(surfaces, now, occlusion, answers);
+    for (std::size_t i = 0; i < now.size() && answers[i].is_known; ++i, ++outcome.traced) {
       say(outcome.traced == 0 ? "\n" : ",\n");
       say(text_of(answers[i], now[i], scene, occlusion));
       if (!answers[i].record.certified) ++outcome.uncertified;
@@ -127,7 +119,7 @@ Diagnostics doubts_about(const Outcome& outcome) {
 }
 
 ExitCode tell(const Outcome& outcome, std::size_t asked, bool strict) {
-  if (!outcome.is_whole) {
+  if (outcome.traced < asked) {
     complain(fmt::format("interrupted; {} of {} rays were traced\n", outcome.traced, asked));
     return ExitCode::Interrupted;
   }

@@ -2,12 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include <gtest/gtest.h>
 
 #include "field/math/elementary.h"
-#include "field/trace/curve/largest_gradient.h"
 #include "tests/trace/first_of_tiles.h"
 #include "tests/trace/large_cells.h"
 #include "tests/trace/oracle.h"
@@ -43,81 +41,6 @@ TEST(OddRays, ANegligibleComponentChangesNothing) {
     }
   }
   EXPECT_GT(hits, 1000);
-}
-
-// Their gradient is large against their field, and tables near the plain sum have to hold as far: where they were level
-// beyond 6 (n - 1) C was off by up to 0.06, and rays beside the surface met it.
-TEST(OddRays, MeetSkeletonsMuchShorterThanTheirRadius) {
-  Random random(304);
-  for (const int n : {3, 4, 6})
-    for (const double alpha : {1.45, 1.5, 1.54, 1.56, 1.57})
-      for (const double part : {1e-2, 1e-3, 1e-5}) {
-        BlendField field;
-        field.degree = n;
-        field.alpha = alpha;
-        field.segments.add({{0, 0, 0}, {part, 0, 0}, 1, 1}, {});
-        const auto tracer = std::move(*BlendTracer::make(field, {}));
-        int hits = 0;
-        for (int i = 0; i < 40; ++i) {
-          const Vec3d eye = random_direction(random) * 3.0;
-          const Ray ray{eye, normalize(random.vector(0.02) - eye)};
-          const auto t = first_hit(*tracer, ray);
-          if (!t) continue;
-          ++hits;
-          EXPECT_NEAR(corrected_value(field, ray.at(*t)), 1, 1e-5)
-              << "n=" << n << " alpha=" << alpha << " length " << part;
-        }
-        EXPECT_GT(hits, 20) << "n=" << n << " alpha=" << alpha << " length " << part;
-      }
-}
-
-// The same where each skeleton has an angle of its own.
-TEST(OddRays, MeetShortSkeletonsWithAnglesOfTheirOwn) {
-  Random random(306);
-  for (const int n : {3, 4})
-    for (const auto& [own, other] : {std::pair{1.5, 1.2}, {1.54, 1.5}, {1.56, 1.2}, {1.57, 1.54}})
-      for (const double part : {1e-3, 1e-4}) {
-        BlendField field;
-        field.degree = n;
-        field.alpha_per_skeleton = true;
-        field.segments.add({{0, 0, 0}, {part, 0, 0}, 1, 1}, {});
-        field.segments.add({{0, 0, 9}, {1, 0, 9}, 0.1, 0.1}, {});
-        field.segments.alphas = {own, other};
-        const auto tracer = std::move(*BlendTracer::make(field, {}));
-        int hits = 0;
-        for (int i = 0; i < 20; ++i) {
-          const Vec3d eye = random_direction(random) * 3.0;
-          const Ray ray{eye, normalize(random.vector(0.02) - eye)};
-          const auto t = first_hit(*tracer, ray);
-          if (!t) continue;
-          ++hits;
-          EXPECT_NEAR(corrected_value(field, ray.at(*t)), 1, 1e-5)
-              << "n=" << n << " alpha=" << own << ", " << other << " length " << part;
-        }
-        EXPECT_GT(hits, 10) << "n=" << n << " alpha=" << own << ", " << other << " length " << part;
-      }
-}
-
-TEST(OddRays, HaveBoundsOfTheGradientWhereTheyMeetShortSkeletons) {
-  Random random(305);
-  double most = 0;
-  for (int i = 0; i < 300; ++i) {
-    BlendField field;
-    field.degree = random.whole(3, 8);
-    const double radius = random.between(0.5, 2), part = radius * exp(random.between(-14, 0));
-    field.segments.add({{0, 0, 0}, {part, 0, 0}, radius, radius}, {});
-    // The plain sum is 1 where the surface is.
-    const Vec3d direction = random_direction(random);
-    double low = 0, high = 4 * radius;
-    for (int k = 0; k < 60; ++k) {
-      const double middle = 0.5 * (low + high);
-      (corrected_value(field, direction * middle) > 1 ? low : high) = middle;
-    }
-    const double found = evaluate(field, direction * high).si_norm, bound = largest_gradient(field);
-    EXPECT_LE(found, bound * (1 + 1e-9)) << "degree " << field.degree << " length " << part;
-    most = std::max(most, found / bound);
-  }
-  EXPECT_GT(most, 0.9);
 }
 
 // Where the operator changes its branch the curve that the tracer reads has a kink.

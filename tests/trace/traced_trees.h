@@ -93,6 +93,15 @@ inline FieldTree random_tree(Random& random) {
   return tree_above(field, field.add({.what = Transform{map, layer[0]}, .where = {}}));
 }
 
+/// Of a field that is one tree.
+inline TreeTracer tracer_of(const FieldDescription& field) {
+  const auto program = compile(field);
+  EXPECT_TRUE(program) << program.why()[0].message;
+  auto tracer = TreeTracer::make(program->trees()[0]);
+  EXPECT_TRUE(tracer) << tracer.why()[0].message;
+  return std::move(*tracer);
+}
+
 /// All cells by themselves.
 inline CrossingSearch traced(const TreeTracer& tracer, const Ray& ray) {
   CrossingSearch first;

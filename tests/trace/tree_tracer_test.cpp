@@ -125,14 +125,6 @@ TEST(TreeTracer, DecidesRaysAcrossACut) {
   EXPECT_LT(hits, rays);
 }
 
-TreeTracer tracer_of(const FieldDescription& field) {
-  const auto program = compile(field);
-  EXPECT_TRUE(program) << program.why()[0].message;
-  auto tracer = TreeTracer::make(program->trees()[0]);
-  EXPECT_TRUE(tracer) << tracer.why()[0].message;
-  return std::move(*tracer);
-}
-
 // Two boxes with a face in common, or a hair between them: from inside one leaves only where there is an outside. Far
 // from the origin places are rounded by more than sums are, and where fields are flat sums by more than places.
 TEST(TreeTracer, GoesThroughACommonFaceButNotAcrossAGap) {
@@ -248,71 +240,6 @@ TEST(TreeTracer, PassesAlongASkeletonInside) {
   }
   std::cout << "  at most " << evaluations << " evaluations\n";
   EXPECT_LT(evaluations, 1000u);
-}
-
-// However many sizes away a ray begins, what it meets is as thin as where it stands tells.
-TEST(TreeTracer, FindsThinBodiesFromFarAway) {
-  Random random(45);
-  for (const double radius : {1e-4, 1e-6, 1e-8}) {
-    FieldDescription field;
-    field.root = add(field, Ricci{1}, {add(field, Sphere{.center = {}, .radius = radius, .potential = {}})});
-    const TreeTracer tracer = tracer_of(field);
-    for (int i = 0; i < 30; ++i) {
-      const UnitVec3 direction = normalize(random.vector(1));
-      const CrossingSearch found = traced(tracer, {.origin = direction * -1e5, .direction = direction});
-      ASSERT_TRUE(found.t) << "radius " << radius;
-      EXPECT_NEAR(*found.t, 1e5 - radius, 1e-9);
-      EXPECT_GT(found.undecided, 1e300);
-    }
-  }
-}
-
-// A film that is thinner than what a search tells may be met or not, but by all ends of a ray alike.
-TEST(TreeTracer, MeetsFilmsAlikeWhereverTheRayEnds) {
-  Random random(50);
-  FieldDescription field;
-  const auto tube = [&](double radius) {
-    return add(field, Cylinder{.from = {-0.7, 0, 0}, .to = {0.7, 0, 0}, .radius = radius, .potential = {}});
-  };
-  const FieldNodeId film = add(field, Difference{}, {tube(0.5 + 8e-12), tube(0.5)});
-  field.root = field.add({.what = Union{{film, tube(0.4998)}}, .where = {}});
-  const TreeTracer tracer = tracer_of(field);
-  int unlike = 0;
-  for (int i = 0; i < 200; ++i) {
-    const Vec3d from = normalize(random.vector(1)) * 4, to{random.between(-0.6, 0.6), random.between(-0.4, 0.4), 0};
-    Ray ray{.origin = from, .direction = normalize(to - from)};
-    const CrossingSearch found = traced(tracer, ray);
-    ASSERT_TRUE(found.t);
-    ray.t_max = *found.t - pow(10.0, random.between(-8, -3));
-    for (std::size_t cell = 0; cell < tracer.cell_count(); ++cell) {
-      CellLog any, first;
-      unlike +=
-          tracer.first_hit(cell, ray, true, any).has_value() != tracer.first_hit(cell, ray, false, first).has_value();
-    }
-  }
-  EXPECT_EQ(unlike, 0);
-}
-
-// However far from the origin a body stands, of it parts are told that are thin against it.
-TEST(TreeTracer, FindsThinShellsOfBodiesFarFromTheOrigin) {
-  Random random(49);
-  for (const double thickness : {1e-4, 1e-6, 1e-7}) {
-    const Vec3d center{2.3e4, 3e4, 9e3};
-    FieldDescription field;
-    const FieldNodeId outer = add(field, Sphere{.center = center, .radius = 1, .potential = {}});
-    const FieldNodeId inner = add(field, Sphere{.center = center, .radius = 1 - thickness, .potential = {}});
-    const FieldNodeId ball = add(field, Sphere{.center = center, .radius = 1 - 4 * thickness, .potential = {}});
-    const FieldNodeId shell = add(field, Difference{}, {outer, inner});
-    field.root = add(field, Ricci{1}, {field.add({.what = Union{{shell, ball}}, .where = {}})});
-    const TreeTracer tracer = tracer_of(field);
-    for (int i = 0; i < 50; ++i) {
-      const UnitVec3 direction = normalize(random.vector(1));
-      const CrossingSearch found = traced(tracer, {.origin = center - direction * 3.0, .direction = direction});
-      ASSERT_TRUE(found.t);
-      EXPECT_NEAR(*found.t, 2, 1e-10) << "thickness " << thickness;
-      EXPECT_GT(found.undecided, 1e300);
-    }
-  }
 }
 
 // A ray in the plane of one cut meets another one at their edge: that plane is on the surface, and starts lie beside
