@@ -8,15 +8,16 @@ namespace {
 constexpr double inf = Box3::inf;
 const Vec3<Interval> unknown{Interval::everything(), Interval::everything(), Interval::everything()};
 
+Correction correction_at(const BlendField& blend, double alpha) {
+  return Correction({blend.kernel, blend.degree, blend.kernel_shape}, alpha, blend.cavity, blend.projection);
+}
+
 // C is monotone in alpha at each f and G, so that the two ends bound it between them [tracing 3.3]; but not with
 // cavity under the compact kernel.
-Interval corrected(const BlendField& blend, const Interval& alpha, const Interval& f, const Interval& G) {
-  const auto with = [&](double a) {
-    return Correction({blend.kernel, blend.degree, blend.kernel_shape}, a, blend.cavity, blend.projection);
-  };
-  const Correction least = with(alpha.lo);
+Interval corrected(const BlendField& blend, const Correction& least, const Interval& alpha, const Interval& f,
+                   const Interval& G) {
   if (alpha.lo == alpha.hi) return correction_bounds(least, f, G);
-  const Correction most = with(alpha.hi);
+  const Correction most = correction_at(blend, alpha.hi);
   if (blend.kernel == KernelFamily::Compact && blend.cavity)
     return correction_bounds_between(*least.bounded(), *most.bounded(), f, G);
   return hull(correction_bounds(least, f, G), correction_bounds(most, f, G));
@@ -52,22 +53,23 @@ Interval slope_along(const SumBounds& sum, const PartialBounds& by, const Vec3<I
 BlendBounds blend_bounds(const BlendField& blend, const Box3& box, Wanted wanted, const Stretch* stretch) {
   if (!is_finite(box.center()) || !is_finite(box.size())) return {{0, inf}, unknown};
   const SumBounds sum(blend, box, wanted, stretch);
-  return blend_bounds(blend, sum, alpha_bounds(blend, sum, box));
+  const AngleBounds angle = alpha_bounds(blend, sum, box);
+  return blend_bounds(blend, sum, angle, correction_at(blend, angle.value.lo));
 }
 
-BlendBounds blend_bounds(const BlendField& blend, const SumBounds& sum, const AngleBounds& angle) {
+BlendBounds blend_bounds(const BlendField& blend, const SumBounds& sum, const AngleBounds& angle,
+                         const Correction& least) {
   const Interval& alpha = angle.value;
   const Interval f = sum.f();
   if (sum.unbounded()) {
     // C is isotone in G and, at G = 0, in f. Without cavity it falls in f there below alpha = 0.
     if (alpha.lo < 0 && !blend.cavity) return {{0, inf}, unknown};
-    return {{corrected(blend, alpha, {f.lo, f.lo}, {0, 0}).lo, inf}, unknown};
+    return {{corrected(blend, least, alpha, {f.lo, f.lo}, {0, 0}).lo, inf}, unknown};
   }
   const Vec3<Interval> S = sum.S();
   const Interval G = sqrt(square(S.x) + square(S.y) + square(S.z));
-  BlendBounds b{.value = corrected(blend, alpha, f, G), .gradient = unknown};
+  BlendBounds b{.value = corrected(blend, least, alpha, f, G), .gradient = unknown};
   if (!sum.has_slopes()) return b;
-  const Correction least({blend.kernel, blend.degree, blend.kernel_shape}, alpha.lo, blend.cavity, blend.projection);
   const PartialBounds by = partial_bounds(blend, least, alpha, b.value, f, G);
   if (sum.stretch() != nullptr) b.along = slope_along(sum, by, S, G, angle.gradient);
   else b.gradient = gradient_of(sum, by, S, G, angle.gradient);

@@ -3,6 +3,7 @@
 
 #include "field/blend/alpha_bounds.h"
 #include "field/blend/blend_field.h"
+#include "field/blend/correction.h"
 #include "field/blend/sum_bounds.h"
 #include "field/number/interval.h"
 
@@ -20,8 +21,8 @@ struct BlendBounds {
 /// For Wanted::Value alone the gradient may be everything. With a stretch, whose middle is that of the box, bounds are
 /// of places on it alone, and its slope stands in `along` instead of the gradient.
 BlendBounds blend_bounds(const BlendField&, const Box3&, Wanted = Wanted::Slopes, const Stretch* = nullptr);
-/// The same from bounds of the sums and of the angle.
-BlendBounds blend_bounds(const BlendField&, const SumBounds&, const AngleBounds&);
+/// The same from bounds of the sums and of the angle, and the correction of the least angle.
+BlendBounds blend_bounds(const BlendField&, const SumBounds&, const AngleBounds&, const Correction& least);
 
 /// The box outside which the corrected field is below `level`, or 0 for level = 0: all of space but for the compact
 /// kernel.

@@ -18,6 +18,11 @@ double sign_of(const Kernel& kernel) { return kernel.family == KernelFamily::Cau
 // k = (w / w_1)^(-sign p).
 double exponent_of(const Kernel& kernel) { return (kernel.degree - sign_of(kernel)) / 2; }
 
+double unit_w_of(const Kernel& kernel) {
+  const double shape_squared = kernel.shape * kernel.shape;
+  return kernel.family == KernelFamily::Cauchy ? 1 + 1 / shape_squared : shape_squared - 1;
+}
+
 }  // namespace
 
 struct BoundedCorrection::TwoSkeletons {
@@ -25,44 +30,57 @@ struct BoundedCorrection::TwoSkeletons {
 };
 
 BoundedCorrection::BoundedCorrection(const Kernel& kernel, double alpha, bool cavity, Projection projection)
-    : kernel_(kernel), curve_(kernel), cavity_(cavity), projection_(projection) {
+    : kernel_(kernel), curve_(kernel), w_1_(unit_w_of(kernel)), cavity_(cavity), projection_(projection) {
   const auto [s, c] = sincos(std::max(alpha, 0.0));
   sin_ = s;
   cos_ = c;
 }
 
+double BoundedCorrection::projected(const Place& at) const { return projected(curve_.place(at.f), at.G); }
+
 // Above the curve, or exactly: the curve itself. Else the chord as a weighted mean (field-maths 4.1).
-double BoundedCorrection::projected(const Place& place) const {
-  const auto [f, G] = place;
-  if (projection_ == Projection::Exact || !(G < curve_.at(f)))
+double BoundedCorrection::projected(const BoundedCurve::Place& place, double G) const {
+  const double f = place.f;
+  if (!is_on_chord(place, G))
     return std::min(curve_.on_line(cos_, sin_, G * cos_ + f * sin_), std::max(f, curve_.top_field()));
-  const double x_H = curve_.inverse(G), weight = curve_.chord_slope(f, G, x_H) * cos_, sum = weight + sin_;
-  return sum > 0 ? (f * sin_ + x_H * weight) / sum : x_H;
+  return Chord(*this, place, G).value;
 }
 
+bool BoundedCorrection::is_on_chord(const BoundedCurve::Place& place, double G) const {
+  return projection_ == Projection::Paper && G < place.g;
+}
+
+BoundedCorrection::Chord::Chord(const BoundedCorrection& of, const BoundedCurve::Place& place, double G)
+    : end(of.curve_.place_of_height(G)),
+      slope(of.curve_.chord_slope(end, place)),
+      weight(slope * of.cos_),
+      sum(weight + of.sin_),
+      value(sum > 0 ? (place.f * of.sin_ + end.f * weight) / sum : end.f) {}
+
 ProjectedSlopes BoundedCorrection::projected_slopes(double f, double G) const {
-  const double value = projected({f, G});
-  if (projection_ == Projection::Exact || !(G < curve_.at(f))) {
-    const double slope = curve_.slope(value), sum = slope * cos_ + sin_;
+  const BoundedCurve::Place place = curve_.place(f);
+  if (!is_on_chord(place, G)) {
+    const double value = projected(place, G);
+    const BoundedCurve::Place root = curve_.place(value);
+    const double slope = curve_.slope(root), sum = slope * cos_ + sin_;
     if (value >= std::max(f, curve_.top_field())) return {value, f > curve_.top_field() ? 1.0 : 0.0, 0, 0};
     if (sum == 0) return {value, 0, 0, 0};  // beyond the top with alpha = 0: level
-    const double dalpha = ((f - value) * cos_ + (curve_.at(value) - G) * sin_) / sum;
+    const double dalpha = ((f - value) * cos_ + (root.g - G) * sin_) / sum;
     return {value, sin_ / sum, cos_ / sum, dalpha};
   }
-  const double x_H = curve_.inverse(G), slope = curve_.chord_slope(f, G, x_H);
-  const double weight = slope * cos_, sum = weight + sin_, slope_at_H = curve_.slope(x_H);
+  const auto [end, slope, weight, sum, value] = Chord(*this, place, G);
+  const double slope_at_H = curve_.slope(end);
   if (!(sum > 0)) return {value, 0, 0, 0};
   // field-maths 4.5; at the top both the chord and the curve are level, and what is left is their common limit
-  const double df = sin_ * (2 * weight + sin_ - curve_.slope(f) * cos_) / (sum * sum);
+  const double df = sin_ * (2 * weight + sin_ - curve_.slope(place) * cos_) / (sum * sum);
   const double steep = slope_at_H > 0 ? weight * (weight / slope_at_H) : 0;
-  return {value, df, (steep + cos_ * sin_) / (sum * sum), slope * (f - x_H) / (sum * sum)};
+  return {value, df, (steep + cos_ * sin_) / (sum * sum), slope * (f - end.f) / (sum * sum)};
 }
 
 // From f: w; from G: h = G / (2 psi).
 BoundedCorrection::Pair BoundedCorrection::pair_at(double f, double G) const {
-  const double sign = sign_of(kernel_), p = exponent_of(kernel_), shape_squared = kernel_.shape * kernel_.shape;
-  const double w_1 = sign > 0 ? 1 + 1 / shape_squared : shape_squared - 1;
-  const double w = w_1 * pow(f / 2, -sign / p), psi = p * f / w, h = G / (2 * psi);
+  const double sign = sign_of(kernel_), p = exponent_of(kernel_), u = root(f / 2, twice_p());
+  const double w = sign > 0 ? w_1_ / (u * u) : w_1_ * (u * u), psi = p * f / w, h = G / (2 * psi);
   return {w, psi, h, w - sign * (h * h)};
 }
 
@@ -95,7 +113,7 @@ std::optional<BoundedCorrection::TwoSkeletons> BoundedCorrection::behind_critica
   Pair critical{.w = 0, .psi = 0, .h = critical_height(here.B), .B = here.B};
   critical.w = here.B + sign * (critical.h * critical.h);
   // k falls (rises) with w as its power; taken from here to there, so that nothing is lost
-  const double f_critical = f * pow(critical.w / here.w, -sign * p);
+  const double f_critical = f * half_power(sign > 0 ? here.w / critical.w : critical.w / here.w, twice_p());
   critical.psi = p * f_critical / critical.w;
   return TwoSkeletons{here, critical};
 }

@@ -63,14 +63,25 @@ class BoundedCorrection {
 
  private:
   struct TwoSkeletons;
+  // From (f, G) horizontally to the curve, and the weighted mean of both ends.
+  struct Chord {
+    BoundedCurve::Place end;
+    double slope, weight, sum, value;
 
+    Chord(const BoundedCorrection&, const BoundedCurve::Place&, double G);
+  };
+
+  int twice_p() const { return kernel_.family == KernelFamily::Cauchy ? kernel_.degree - 1 : kernel_.degree + 1; }
+  bool is_on_chord(const BoundedCurve::Place&, double G) const;
+  double projected(const BoundedCurve::Place&, double G) const;
   ProjectedSlopes projected_slopes(double f, double G) const;
   double steepness(double h, double B) const;
   std::optional<TwoSkeletons> behind_critical_point(double f, double G) const;
 
   Kernel kernel_;
   BoundedCurve curve_;
-  double sin_, cos_;
+  double w_1_;  // of a unit skeleton at its surface
+  double sin_ = 0, cos_ = 1;
   bool cavity_;
   Projection projection_;
 };

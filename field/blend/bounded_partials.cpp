@@ -19,18 +19,25 @@ Interval padded(double low, double high) { return {low * (1 - error), high * (1 
 // k = (w / w_1)^(-sign p) of one unit skeleton.
 struct Powers {
   double n, sign, p, w_1;
+  int degree, twice_p;
 
   explicit Powers(const Kernel& kernel)
       : n(kernel.degree),
         sign(kernel.family == KernelFamily::Cauchy ? 1 : -1),
         p((n - sign) / 2),
-        w_1(sign > 0 ? 1 + 1 / square(kernel.shape) : square(kernel.shape) - 1) {}
+        w_1(sign > 0 ? 1 + 1 / square(kernel.shape) : square(kernel.shape) - 1),
+        degree(kernel.degree),
+        twice_p(sign > 0 ? degree - 1 : degree + 1) {}
 
-  // Where B = n h^2 on M, which holds all places behind critical points:  f^2 = (n + sign) G^2 w / (4 p^2).
-  double crest_field(double G) const { return pow(crest_scale() * square(G), 1 / (2 + sign / p)); }
-  double crest_gradient(double f) const { return std::sqrt(pow(f, 2 + sign / p) / crest_scale()); }
-  double crest_scale() const { return (n + sign) * w_1 * pow(2.0, sign / p) / (4 * p * p); }
-  Interval field(const Interval& w) const { return 2 * pow(w * (1 / w_1), -sign * p); }
+  // Where B = n h^2 on M, which holds all places behind critical points:  f^2 = (n + sign) G^2 w / (4 p^2). With f =
+  // 2 u^(2p), w = w_1 u^(-2 sign) that is u^n = G sqrt((n + sign) w_1) / (4p).
+  double crest_field(double G) const { return 2 * integer_power(root(crest() * G, degree), twice_p); }
+  double crest_gradient(double f) const { return integer_power(root(f / 2, twice_p), degree) / crest(); }
+  double crest() const { return std::sqrt((n + sign) * w_1) / (4 * p); }
+  Interval field(const Interval& w) const {
+    const auto at = [&](double x) { return 2 * half_power(sign > 0 ? w_1 / x : x / w_1, twice_p); };
+    return sign > 0 ? padded(at(w.hi), at(w.lo)) : padded(at(w.lo), at(w.hi));
+  }
 };
 
 // The places behind critical points, for a range of angles.
@@ -78,7 +85,7 @@ Behind::Critical Behind::critical(const BoundedCorrection& least, const BoundedC
 }
 
 PartialBounds Behind::partials(const ProjectionPartials& projection, const Interval& value) const {
-  const auto& [n, sign, p, w_1] = of_;
+  const double n = of_.n, sign = of_.sign, p = of_.p;
   const Interval &h = D_.h, &u = D_.u;
   const Interval D_f = of_.field(D_.w), D_G = 2 * p * D_f * h / D_.w;
   const PartialBounds at_D = projection.at(value, D_f, D_G);
@@ -109,7 +116,8 @@ PartialBounds bounded_partials(const Correction& c, const Interval& alpha, const
     return c.cavity() ? PartialBounds{{0, rounding::inf}, {0, rounding::inf}} : hull(any, same);
   }
   if (!c.cavity() || !least.in_cavity_branch(f.hi, G.lo)) return projection.at(value, f, G);
-  const BoundedCorrection most(least.kernel(), alpha.hi, true, c.projection());
+  const BoundedCorrection most =
+      alpha.lo == alpha.hi ? least : BoundedCorrection(least.kernel(), alpha.hi, true, c.projection());
   const PartialBounds behind = Behind(least, most, Powers(least.kernel()), f, G).partials(projection, value);
   return most.in_cavity_branch(f.lo, G.hi) ? behind : hull(behind, projection.at(value, f, G));
 }

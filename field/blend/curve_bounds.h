@@ -14,13 +14,20 @@ class CurveBounds {
  public:
   explicit CurveBounds(const BoundedCurve&);
 
-  /// g over an interval of f.
-  Interval at(const Interval& f) const;
-  Interval slope(const Interval& f) const;
+  /// An interval of f with the places of its ends.
+  struct Span {
+    BoundedCurve::Place lo, hi;
+
+    Interval f() const { return {lo.f, hi.f}; }
+  };
+  Span span(const Interval& f) const { return {curve_.place(f.lo), curve_.place(f.hi)}; }
+
+  Interval at(const Span&) const;
+  Interval slope(const Span&) const;
   /// The f <= f* at which the curve has the heights G.
   Interval inverse(const Interval& G) const;
   /// Slopes of the chords between any two places of both intervals.
-  Interval chord(const Interval& a, const Interval& b) const;
+  Interval chord(const Span& a, const Span& b) const;
 
   /// Beyond this f the curve is concave, before it convex: 0 under the compact kernel.
   double inflection() const { return inflection_; }
@@ -30,12 +37,14 @@ class CurveBounds {
   const BoundedCurve& curve() const { return curve_; }
 
  private:
-  double slope_at(double f) const;
-  Interval chord_between(double x, double y) const;
+  using Place = BoundedCurve::Place;
+
+  double slope_at(const Place&) const;
+  Interval chord_between(const Place& x, const Place& y) const;
   Interval padded(double low, double high) const;
 
   const BoundedCurve& curve_;
-  double inflection_, largest_ratio_, slope_error_;
+  double inflection_, steepest_, largest_ratio_, slope_error_;
 };
 
 }  // namespace marrow

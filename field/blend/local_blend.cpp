@@ -104,7 +104,7 @@ BlendBounds LocalBlend::bounds(const Box3& box, Wanted wanted, const Stretch* st
   if (!is_finite(box.center()) || !is_finite(box.size())) return blend_bounds(blend_, box, wanted, stretch);
   SumBounds sum(rest_, box, wanted, stretch);
   for_each_sums([&](const SourceSums& s) { sum.add(s); });
-  return blend_bounds(blend_, sum, {blend_.alpha, {}});
+  return blend_bounds(blend_, sum, {blend_.alpha, {}}, correction_);
 }
 
 std::size_t LocalBlend::near_count() const {

@@ -25,9 +25,9 @@ double rest(double a, double b) { return a == inf || b == 0 ? 0 : b / (a + b); }
 struct Ratios {
   Interval f_to_chord, chord_to_x;
 };
-Ratios ratios(const CurveBounds& curve, const Interval& s, const Interval& f, const Interval& x) {
+Ratios ratios(const CurveBounds& curve, const Interval& s, const CurveBounds::Span& f, const CurveBounds::Span& x) {
   const Interval at_f = curve.slope(f), at_x = curve.slope(x);
-  const double least = f.hi <= curve.inflection() ? 1 : 0, most = x.lo >= curve.inflection() ? 1 : inf;
+  const double least = f.hi.f <= curve.inflection() ? 1 : 0, most = x.lo.f >= curve.inflection() ? 1 : inf;
   const auto within = [&](double low, double high, double top) {
     return Interval{std::clamp(low * (1 - error), least, top), std::clamp(high * (1 + error), least, top)};
   };
@@ -41,17 +41,20 @@ ProjectionPartials::ProjectionPartials(const CurveBounds& curve, Projection proj
     : curve_(curve), projection_(projection), angle_(angle) {}
 
 PartialBounds ProjectionPartials::at(const Interval& value, const Interval& f, const Interval& G) const {
-  const Interval g = curve_.at(f);
+  const CurveBounds::Span places = curve_.span(f);
+  const Interval g = curve_.at(places);
   if (projection_ == Projection::Exact || !(G.lo < g.hi)) return on_line(value, f, G);
-  const PartialBounds below = on_chord(f, {G.lo, std::min(G.hi, g.hi)});
+  const PartialBounds below = on_chord(places, {G.lo, std::min(G.hi, g.hi)});
   return G.hi < g.lo ? below : hull(below, on_line(value, f, {std::max(G.lo, g.lo), G.hi}));
 }
 
 // With the slope s of the chord, r = g'(f) / s, t = s / g'(x_H) and psi = s cos / (s cos + sin) (field-maths 4.5):
 //   dC/df = (1 - psi) (1 + psi (1 - r)), which falls with psi and with r, as r < 2 (largest_ratio() is 3/2 at most);
 //   dC/dG = (1 + psi (t - 1)) / (s + tan), linear in psi;   dC/dalpha = (g(f) - G) / (s cos + sin)^2.
-PartialBounds ProjectionPartials::on_chord(const Interval& all_f, const Interval& G) const {
-  const Interval x = curve_.inverse(G), f{std::max(all_f.lo, x.lo), std::max(all_f.hi, x.lo)};
+PartialBounds ProjectionPartials::on_chord(const CurveBounds::Span& all, const Interval& G) const {
+  const CurveBounds::Span x = curve_.span(curve_.inverse(G));
+  const auto behind = [&](const BoundedCurve::Place& place) { return place.f < x.lo.f ? x.lo : place; };
+  const CurveBounds::Span f{behind(all.lo), behind(all.hi)};
   const Interval s = curve_.chord(x, f);
   const auto& [sine, cosine] = angle_;
   const auto [r, t] = ratios(curve_, s, f, x);
@@ -88,13 +91,14 @@ PartialBounds ProjectionPartials::on_line(const Interval& value, const Interval&
 // The root x of g(x) cos + x sin = G cos + f sin.
 PartialBounds ProjectionPartials::on_curve(const Interval& value, const Interval& f, const Interval& G) const {
   const auto& [sine, cosine] = angle_;
-  const Interval slope = curve_.slope(value);
+  const CurveBounds::Span places = curve_.span(value);
+  const Interval slope = curve_.slope(places);
   const Interval df{at_least(sine.lo, product(slope.hi, cosine.hi) + sine.lo),
                     sine.hi == 0 ? 0 : rest(product(slope.lo, cosine.lo), sine.hi)};
   const Interval dG{at_least(cosine.lo, product(slope.hi, cosine.lo) + sine.hi),
                     at_most(cosine.hi, product(slope.lo, cosine.hi) + sine.lo)};
   const Interval den{product(slope.lo, cosine.lo) + sine.lo, product(slope.hi, cosine.hi) + sine.hi};
-  return {padded(df.lo, df.hi), padded(dG.lo, dG.hi), ((f - value) * cosine + (curve_.at(value) - G) * sine) / den};
+  return {padded(df.lo, df.hi), padded(dG.lo, dG.hi), ((f - value) * cosine + (curve_.at(places) - G) * sine) / den};
 }
 
 }  // namespace marrow

@@ -15,7 +15,7 @@ class ProjectionPartials {
   PartialBounds at(const Interval& value, const Interval& f, const Interval& G) const;
 
  private:
-  PartialBounds on_chord(const Interval& f, const Interval& G) const;
+  PartialBounds on_chord(const CurveBounds::Span& f, const Interval& G) const;
   PartialBounds on_line(const Interval& value, const Interval& f, const Interval& G) const;
   PartialBounds on_curve(const Interval& value, const Interval& f, const Interval& G) const;
 

@@ -13,6 +13,7 @@ namespace marrow {
 /// the skeleton, so that it has two branches. Only the outer one (f <= f*) tells a lone skeleton from a sum.
 /// Here g goes on beyond f* at the height of its top: continuous, with a continuous slope, and never falling, which is
 /// what a projection needs (field-maths 1 leaves open what lies beyond).
+/// By u = sqrt(v) all powers are whole: but for u itself, a root of f, nothing here is transcendental.
 class BoundedCurve {
  public:
   /// Precondition: the family is not the inverse one, the shape is valid.
@@ -21,29 +22,38 @@ class BoundedCurve {
   double largest_field() const { return f_max_; }  ///< on the skeleton
   double top_field() const { return f_top_; }      ///< f*
   double top() const { return g_top_; }            ///< g(f*)
-  double field_power() const { return p_; }        ///< p
+  double field_power() const { return 0.5 * k_; }  ///< p
   int height_power() const { return e_; }          ///< e
   double height_scale() const { return g_0_; }     ///< g_0
 
-  /// f >= 0. Continued beyond f*.
-  double at(double f) const;
+  /// Of the continued curve; u = sqrt(v), that of the top from there on.
+  struct Place {
+    double f, g, u;
+  };
+  /// f >= 0.
+  Place place(double f) const;
+  /// The first place of the height G: that with f = x_H; the top for all G above it.
+  Place place_of_height(double G) const;
+  /// g'.
+  double slope(const Place&) const;
+  /// Slope of the chord between two places, the first of them not beyond the top; without cancellation but near that.
+  double chord_slope(const Place&, const Place&) const;
+
+  double at(double f) const { return place(f).g; }
   /// |grad_S f| of a lone skeleton, on both branches: not continued.   Precondition: f <= largest_field().
   double alone_at(double f) const { return height_at(parameter(f)); }
-  double slope(double f) const;
-  /// x_H: the f <= f* at which the curve has height G, f* for all G above the top.
-  double inverse(double G) const;
-  /// (g(f) - G) / (f - inverse(G)) for G <= g(f): the slope of the chord, without cancellation near the curve.
-  double chord_slope(double f, double G, double x_H) const;
+  double slope(double f) const { return slope(place(f)); }
+  double inverse(double G) const { return place_of_height(G).f; }
   /// The x with g(x) c + x s = height; c, s >= 0, not both 0. Where c = 1, s = 0 and the height is above the top: f*.
   double on_line(double c, double s, double height) const;
 
  private:
   double parameter(double f) const;
-  double field_at(double v) const;
-  double height_at(double v) const;
+  double field_at(double u) const;
+  double height_at(double u) const;
 
-  int e_;
-  double p_, f_max_, g_0_, v_top_, f_top_, g_top_;
+  int e_, k_;  // k = 2 p
+  double f_max_, g_0_, u_top_, f_top_, g_top_;
 };
 
 }  // namespace marrow

@@ -141,11 +141,12 @@ TEST(CurveBounds, HoldSlopesAndChords) {
     const Interval b =
         around(random, top * (i % 3 == 0 ? random.between(0, 2) : std::fabs(1 + width * random.between(-2, 2))), width);
     const double x = within(random, a, i % 7), y = within(random, b, i % 5);
-    EXPECT_TRUE(bounds.slope(a).contains(curve.slope(x)));
+    const CurveBounds::Span from = bounds.span(a), to = bounds.span(b);
+    EXPECT_TRUE(bounds.slope(from).contains(curve.slope(x)));
     if (std::fabs(x - y) < 1e-3 * top) continue;  // differences lose more than the bounds allow
     const double chord = (curve.at(x) - curve.at(y)) / (x - y);
-    EXPECT_TRUE(bounds.chord(a, b).contains(chord))
-        << chord << " is not in " << bounds.chord(a, b).lo << " .. " << bounds.chord(a, b).hi;
+    EXPECT_TRUE(bounds.chord(from, to).contains(chord))
+        << chord << " is not in " << bounds.chord(from, to).lo << " .. " << bounds.chord(from, to).hi;
     const double G = std::min(curve.top() * random.between(0, 1), curve.top());
     const Interval root = bounds.inverse(G);
     EXPECT_LE(curve.at(root.lo), G * (1 + 1e-12));

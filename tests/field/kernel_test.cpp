@@ -8,6 +8,7 @@
 #include "field/kernel/inverse_family.h"
 #include "field/kernel/power_integrals.h"
 #include "field/kernel/segment_moments.h"
+#include "field/math/elementary.h"
 #include "field/math/gauss_rule.h"
 #include "tests/field/random.h"
 
@@ -24,6 +25,18 @@ TEST(GaussRule, IsExactForPolynomials) {
     for (std::size_t i = 0; i < 12; ++i) integral += rule.weights[i] * integer_power(rule.nodes[i], power);
     EXPECT_NEAR(integral, 1.0 / (power + 1), 2e-16 * 4) << power;
   }
+}
+
+TEST(Root, IsTheRootOfAWholeDegree) {
+  Random random(53);
+  for (int degree = 1; degree <= 21; ++degree)
+    for (int i = 0; i < 2000; ++i) {
+      const double x = std::exp2(random.between(-1, 1) * (i % 2 == 0 ? 996 : 8));
+      const long double expected = std::pow(static_cast<long double>(x), 1.0L / degree);
+      EXPECT_LE(std::fabs(static_cast<double>(root(x, degree) / expected - 1)), 3 * 0x1p-52) << x << ' ' << degree;
+    }
+  EXPECT_EQ(root(0, 5), 0);
+  EXPECT_EQ(root(1, 21), 1);
 }
 
 TEST(InverseFamily, NormalisationIsTheGammaQuotient) {
