@@ -69,6 +69,20 @@ void for_each_panel(double begin, double end, std::span<const Singularity> singu
   }
 }
 
+/// Calls visit(x, weight) at the nodes of the shortest rule that integrates polynomials of the degree, up to 23, over
+/// [0, length].
+template <class Visit>
+void for_each_polynomial_node(double length, int degree, const Visit& visit) {
+  const auto with = [&](const auto& rule) {
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i) visit(length * rule.nodes[i], length * rule.weights[i]);
+  };
+  if (degree <= 5) with(gauss_rule<3>);
+  else if (degree <= 7) with(gauss_rule<4>);
+  else if (degree <= 11) with(gauss_rule<6>);
+  else if (degree <= 15) with(gauss_rule<8>);
+  else with(gauss_rule<12>);
+}
+
 /// Calls visit(x, weight) at the nodes of the shortest rule that holds for an integrand with a polynomial factor of
 /// the given degree.
 template <class Visit>

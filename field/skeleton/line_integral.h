@@ -71,6 +71,20 @@ void between_roots(const Line& line, double middle, double half, double longest,
   });
 }
 
+// The same of an even degree: there the kernel is a polynomial over a power of the radius, so that rules go along t.
+template <class Visit>
+void between_roots_evenly(const Line& line, double middle, double half, int degree, const Visit& visit) {
+  const double begin = std::max(line.t1, middle - half), length = std::min(line.t2, middle + half) - begin;
+  if (!(length > 0)) return;
+  const auto at = [&](double from_begin, double weight) { visit(begin + from_begin, weight); };
+  if (line.slope == 0) {
+    for_each_polynomial_node(length, degree + 1, at);  // one for shares
+    return;
+  }
+  const Singularity pole{-line.at_foot / line.slope - begin, 0};
+  for_each_panel(0, length, {&pole, 1}, length, [&](const Panel& panel) { for_each_node(panel, degree, at); });
+}
+
 // A <= 0: from a root on, where the radius grows. With t = root + direction w^2 half powers are powers of w.
 template <class Visit>
 void beyond_root(const Line& line, double root, const Visit& visit) {
@@ -85,12 +99,16 @@ void beyond_root(const Line& line, double root, const Visit& visit) {
 }
 
 template <class Visit>
-void integrate_compact(const Line& line, const Kernel& kernel, const Visit& visit) {
+void integrate_compact(const Line& line, const Kernel& kernel, int dimension, const Visit& visit) {
   const double R2 = kernel.shape * kernel.shape;
   const double A = 1 - R2 * line.slope * line.slope, B = -R2 * line.slope * line.at_foot;
   const double C = line.h_squared - R2 * line.at_foot * line.at_foot, discriminant = B * B - A * C;
   if (A > 0) {
-    if (discriminant > 0) between_roots(line, -B / A, std::sqrt(discriminant) / A, longest_panel(kernel), visit);
+    if (!(discriminant > 0)) return;
+    const double middle = -B / A, half = std::sqrt(discriminant) / A;
+    const int degree = kernel.degree + 1 - dimension;  // of Profile
+    if (degree % 2 == 0) between_roots_evenly(line, middle, half, degree, visit);
+    else between_roots(line, middle, half, longest_panel(kernel), visit);
     return;
   }
   // The root on the side of positive radii, in the form without cancellation: C / (-B -+ sqrt).
@@ -120,12 +138,13 @@ void integrate_inverse(const Line& line, const Kernel& kernel, const Visit& visi
 }
 
 /// Calls visit(t, dt) such that sums of k(d/tau) times a polynomial of low degree are integrals along the line, to
-/// 1e-13. Precondition: the point is not on the line under the inverse kernel.
+/// 1e-13. The compact kernel is that of a curve, of the kernel's degree. Precondition: the point is not on the line
+/// under the inverse kernel.
 template <class Visit>
-void integrate_line(const Line& line, const Kernel& kernel, const Visit& visit) {
+void integrate_line(const Line& line, const Kernel& kernel, int dimension, const Visit& visit) {
   if (kernel.family == KernelFamily::Inverse) integrate_inverse(line, kernel, visit);
   else if (kernel.family == KernelFamily::Cauchy) integrate_cauchy(line, kernel, visit);
-  else integrate_compact(line, kernel, visit);
+  else integrate_compact(line, kernel, dimension, visit);
 }
 
 }  // namespace marrow

@@ -19,7 +19,7 @@ SkeletonSample segment_field(const SegmentSkeleton& segment, const Vec3d& p, con
   if (segment.from == segment.to) return sum;
   const auto [length, foot, u, across, line] = seen_from(segment, p);
   const Profile profile(kernel, 1);
-  integrate_line(line, kernel, [&](double t, double weight) {
+  integrate_line(line, kernel, 1, [&](double t, double weight) {
     const double tau = segment.radius_from + line.slope * (t + foot);
     add_source<Order>(profile, across - u * t, tau, weight / (profile.normalisation() * tau), sum);
   });
@@ -32,7 +32,7 @@ ShareSample segment_share(const SegmentSkeleton& segment, const Vec3d& p, const 
   const auto [length, foot, u, across, line] = seen_from(segment, p);
   if (is_on_line(line, kernel)) return share;
   const Profile profile(kernel, 1);
-  integrate_line(line, kernel, [&](double t, double weight) {
+  integrate_line(line, kernel, 1, [&](double t, double weight) {
     const double tau = segment.radius_from + line.slope * (t + foot);
     SkeletonSample part;
     add_source<Derivatives::First>(profile, across - u * t, tau, weight / (profile.normalisation() * tau), part);

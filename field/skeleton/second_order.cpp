@@ -45,7 +45,7 @@ SecondOrderSample second_order(const SegmentSkeleton& segment, const Vec3d& p, c
   const auto [length, foot, u, across, line] = seen_from(segment, p);
   if (is_on_line(line, kernel)) return SecondOrderSample::on_skeleton();
   const Profile profile(kernel, 1);
-  integrate_line(line, kernel, [&](double t, double weight) {
+  integrate_line(line, kernel, 1, [&](double t, double weight) {
     const double tau = segment.radius_from + line.slope * (t + foot);
     sum += second_order_source(profile, across - u * t, tau, weight / (profile.normalisation() * tau));
   });

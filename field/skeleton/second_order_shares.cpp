@@ -37,7 +37,7 @@ X share_of_end(const SegmentSkeleton& segment, const Vec3d& p, const Kernel& ker
   const auto [length, foot, u, across, line] = seen_from(segment, p);
   if (is_on_line(line, kernel)) return share;
   const Profile profile(kernel, 1);
-  integrate_line(line, kernel, [&](double t, double weight) {
+  integrate_line(line, kernel, 1, [&](double t, double weight) {
     const double tau = segment.radius_from + line.slope * (t + foot);
     const double part = weight / (profile.normalisation() * tau) * ((t + foot) / length);
     share += second_order_source(profile, across - u * t, tau, part).field;

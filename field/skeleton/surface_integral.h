@@ -173,7 +173,7 @@ Sum integrate_triangle(const TriangleSkeleton& triangle, const Vec3d& p, const K
     if (!(line.t1 < line.t2)) return;
     const Vec3d across = v.normal * v.p_normal - v.w * x;
     const auto radius = [&](double t) { return seen.radius1 + seen.slope * (t - seen.t1); };
-    integrate_line(line, kernel, [&](double t, double dt) { visit(across - v.u * t, radius(t), weight * dt, sum); });
+    integrate_line(line, kernel, 2, [&](double t, double dt) { visit(across - v.u * t, radius(t), weight * dt, sum); });
     if (kernel.family == KernelFamily::Compact)
       for_each_edge(line, kernel.shape, [&](double t, double steepness) {
         visit_edge(across - v.u * t, radius(t), weight / steepness, sum);
