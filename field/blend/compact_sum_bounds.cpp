@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "field/blend/steepest_slope.h"
+#include "field/blend/compact_steepness.h"
 #include "field/blend/sum_bounds.h"
 #include "field/blend/support_share.h"
 #include "field/skeleton/distance.h"
@@ -17,21 +17,15 @@ namespace {
 
 constexpr double inf = Box3::inf;
 
-// sup of the second derivatives, over the scaled position, of the normalised compact kernel (1 - x^2/R^2)^h, h = m/2:
-// its derivatives along and across are -2h/R^2 (1-y)^(h-1) and that plus 4h(h-1)/R^2 y (1-y)^(h-2), y = x^2/R^2 <= 1.
-double most_bent(const Profile& profile, const Kernel& kernel) {
-  const double m = profile.degree();
-  return m < 4 ? inf : m * (m - 2) / (kernel.shape * kernel.shape) / profile.normalisation() * (1 + 1e-9);
+// The second derivatives of the kernel times what the support holds of a skeleton. For m = 3 they are at most
+// 3/R^2 (1-y)^(-1/2), and along a segment R^2 r^2 (1-y) is a parabola, so that the integral from root to root is
+// finite: that of R r / sqrt(Q), Q = (1 - R^2 r'^2) (L^2 - s^2), is at most pi R r / sqrt(1 - R^2 r'^2).
+double held_bend(const Profile& profile, const Kernel&, const CompactSteepness& steepness, const auto&, double held) {
+  return profile.degree() < 4 ? inf : steepness.second() * held;
 }
-
-// The same times what the support holds of a skeleton. For m = 3 second derivatives are at most 3/R^2 (1-y)^(-1/2), and
-// along a segment R^2 r^2 (1-y) is a parabola, so that the integral from root to root is finite: that of
-// R r / sqrt(Q), Q = (1 - R^2 r'^2) (L^2 - s^2), is at most pi R r / sqrt(1 - R^2 r'^2).
-double held_bend(const Profile& profile, const Kernel& kernel, const auto&, double held) {
-  return most_bent(profile, kernel) * held;
-}
-double held_bend(const Profile& profile, const Kernel& kernel, const SegmentSkeleton& s, double held) {
-  if (profile.degree() != 3) return most_bent(profile, kernel) * held;
+double held_bend(const Profile& profile, const Kernel& kernel, const CompactSteepness& steepness,
+                 const SegmentSkeleton& s, double held) {
+  if (profile.degree() != 3) return profile.degree() < 4 ? inf : steepness.second() * held;
   const double R = kernel.shape, slope = (s.radius_to - s.radius_from) / length(s.to - s.from);
   const double open = 1 - square(R * slope);
   if (!(open > 0)) return inf;
@@ -49,11 +43,13 @@ double most_changed(const Profile& profile, const Kernel& kernel, double step) {
 
 // How far the second derivatives of the kernel change over a scaled step, of what either support `held`
 // and where `crossed` of it comes in or goes, at most: with w = 1 - y they are -a w^(h-1) + b w^(h-2) v v^T, a =
-// 2h/R^2, b = 4h(h-1)/R^4, h = m/2. Powers below 1 change by that power of the change of w, 2 step / R; w^0 by 1 at the
-// edge only.
-double bend_changes(const Profile& profile, const Kernel& kernel, double step, double held, double crossed) {
+// 2h/R^2, b = 4h(h-1)/R^4, h = m/2. Below h = 3 powers below 1 change by that power of the change of w, 2 step / R;
+// w^0 by 1 at the edge only.
+double bend_changes(const Profile& profile, const Kernel& kernel, const CompactSteepness& steepness, double step,
+                    double held, double crossed) {
   const double R = kernel.shape, h = 0.5 * profile.degree(), by = 2 * step / R;
   if (h < 2 || crossed == inf) return inf;
+  if (h >= 3) return steepness.third() * step * held;
   const double a = 2 * h / (R * R), b = 4 * h * (h - 1) / (R * R * R * R);
   const auto change = [&](double power) { return power >= 1 ? power * by : std::sqrt(by); };
   const double at_edge = h > 2 ? held * change(h - 2) : crossed;
@@ -79,7 +75,8 @@ std::optional<Beside> beside(const SegmentSkeleton& s, const Profile& profile, c
     const double nearest = (length(to_end - half * way) - stretch->slack) * (1 - 1e-12) / (R * tau);
     const double within = std::max(0.0, 1 - square(std::max(0.0, nearest)));  // 1 - y
     if (within == 0) continue;
-    const double lower = pow(within, h - 2), scale = 2 * h / (R * profile.normalisation() * tau * tau) * (1 + 1e-9);
+    const double lower = half_power(within, profile.degree() - 4),
+                 scale = 2 * h / (R * profile.normalisation() * tau * tau) * (1 + 1e-9);
     b.ends_bent += scale * within * lower;
     b.ends_J_changes += scale / R * (within + 2 * (h - 1)) * lower;
   }
@@ -98,6 +95,7 @@ SumBounds::Part smooth_part(const SkeletonSample& s, double steepest, double ben
 struct Changes {
   double steepest = 0, bent = 0;  // of |grad f| and |D^2 f|
   double J = 0, S = 0;            // by which these may differ from those in the middle
+  double S_beyond_J = 0;          // from that in the middle with J there
   double radius = 0;
 
   void add(const Changes& part) {
@@ -105,6 +103,7 @@ struct Changes {
     bent += part.bent;
     J += part.J;
     S += part.S;
+    S_beyond_J += part.S_beyond_J;
     radius = std::max(radius, part.radius);
   }
   void bound_by(const Changes& b) {
@@ -112,6 +111,7 @@ struct Changes {
     bent = std::min(bent, b.bent);
     J = std::min(J, b.J);
     S = std::min(S, b.S);
+    S_beyond_J = std::min(S_beyond_J, b.S_beyond_J);
     radius = std::min(radius, b.radius);
   }
 };
@@ -127,19 +127,30 @@ struct Asked {
   bool reaches(const auto& s) const { return distance_to(s, center) <= rho + kernel.shape * largest_radius(s); }
 };
 
+// What of a skeleton can be in the support at once, where all of it is `near` away at least: of a straight one a chord
+// of that ball which does not enter the smaller one, or what is left of it behind that.
+double held_of(const auto& s, double reach, double) { return share_within(s, reach); }
+double held_of(const SegmentSkeleton& s, double reach, double near) {
+  return share_within(s, std::sqrt(std::max(0.0, (reach - near) * (reach + near))) * (1 + 1e-9));
+}
+
 // f changes by sup |k'| over the least radius, times the share of the skeleton that the support can hold.
 Changes changes_of(const auto& s, const Asked& asked) {
   const auto& [profile, kernel, center, rho, across, is_along] = asked;
   const double reach = kernel.shape * largest_radius(s), least = least_radius(s), largest = largest_radius(s);
-  const double held = share_within(s, reach), bend = held_bend(profile, kernel, s, held);
-  Changes c{.steepest = steepest(profile, kernel) * held / least * (1 + 1e-9),
+  const double near = std::max(0.0, distance_to(s, center) * (1 - 1e-9) - rho);
+  const CompactSteepness steepness(profile, kernel.shape, std::max(0.0, 1 - square(near / reach)));
+  const double held = held_of(s, reach, near), bend = held_bend(profile, kernel, steepness, s, held);
+  Changes c{.steepest = steepness.first() * held / least,
             .bent = bend / (least * least),
             .S = most_changed(profile, kernel, rho / least) * held * (largest / least),
             .radius = largest};
-  if (bend < inf)
-    c.J = bend_changes(profile, kernel, across / least, share_within(s, reach + across),
+  if (bend < inf) {
+    c.J = bend_changes(profile, kernel, steepness, across / least, held_of(s, reach + across, near),
                        share_crossing(s, center, across, kernel.shape, is_along)) /
           least;
+    c.S_beyond_J = c.J * across * (profile.degree() >= 6 ? 0.5 : 1);  // where J changes by as much for each step
+  }
   return c;
 }
 
@@ -184,7 +195,7 @@ void SumBounds::add_compact(const BlendField& blend) {
       const Changes changes = changes_at_most(s, asked);
       if (keeps_parts_) keep(smooth_part(sample, changes.steepest, changes.bent, rho_));
       if (changes.bent < inf) {
-        add(sample, Smooth{changes.steepest, changes.bent, changes.radius, asked.across, changes.J,
+        add(sample, Smooth{changes.steepest, changes.bent, changes.radius, asked.across, changes.J, changes.S_beyond_J,
                            along ? along->ends_bent : 0, along ? along->ends_J_changes : 0});
         continue;
       }

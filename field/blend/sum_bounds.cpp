@@ -63,8 +63,10 @@ void SumBounds::add(const SkeletonSample& s, double distance, double radius, int
 // is at most most_bent w^2 + ends_bent (a^2 + 2 a w).
 void SumBounds::add(const SkeletonSample& s, const Smooth& b) {
   const double longest = b.steepest * b.radius, most_J = b.most_bent * b.radius;
-  const double J_by = std::min(b.J_changes + b.ends_J_changes * rho_ + compact_error * most_J, most_J);
-  const double S_by = J_by * b.across + b.ends_J_changes * rho_ * rho_ + compact_error * longest;
+  const double J_by = b.J_changes + b.ends_J_changes * rho_ + compact_error * most_J;
+  const bool has_J = J_by < most_J;
+  const double S_by = (has_J ? b.S_beyond_J + compact_error * most_J * b.across : most_J * b.across) +
+                      b.ends_J_changes * rho_ * (b.across + rho_) + compact_error * longest;
   const double bent = b.most_bent * b.across * b.across + b.ends_bent * rho_ * (rho_ + 2 * b.across);
   log_slope_ = inf;
   f_ += s.value;
@@ -80,9 +82,9 @@ void SumBounds::add(const SkeletonSample& s, const Smooth& b) {
   low_ += std::max(0.0, s.value * (1 - compact_error) - b.steepest * rho_);
   const bool is_near = S_by < longest;
   if (is_near) S_ += s.si_gradient;
-  if (is_near && J_by < most_J) J_ += s.si_jacobian;
+  if (is_near && has_J) J_ += s.si_jacobian;
   S_error_ += std::min(longest, S_by) * (1 + 1e-9);
-  J_error_ += is_near ? J_by : most_J;
+  J_error_ += is_near && has_J ? J_by : most_J;
 }
 
 // Within rho distances shrink by 1 - rho / nearest at most, and B3 and B4 hold with the sums of the sources.

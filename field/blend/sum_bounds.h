@@ -55,6 +55,7 @@ class SumBounds {
     double steepest, most_bent, radius;
     double across;
     double J_changes;                          ///< by which J may differ between the middle and any place as far across
+    double S_beyond_J;                         ///< and S there from what J in the middle tells
     double ends_bent = 0, ends_J_changes = 0;  ///< what ends add to its second derivatives, and to J over a length
   };
   void add(const SkeletonSample&, const Smooth&);
