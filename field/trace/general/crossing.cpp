@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include <boost/math/tools/toms748_solve.hpp>
+
 namespace marrow {
 namespace {
 
@@ -154,27 +156,25 @@ class Search {
   static double length(const Piece& piece) { return piece.end - piece.begin; }
   bool is_short(const Piece& piece) const { return length(piece) <= gap(piece.end); }
 
-  // The one change of side, by regula falsi that halves the weight of an end that stays (the Illinois rule), with
-  // halving where that is slow. The end on the far side is returned: t is never before the surface.
-  double placed(Piece piece) {
-    double a = piece.begin, b = piece.end, fa = at(a) - 1, fb = at(b) - 1;
-    int stays = 0;
-    for (int step = 0; step < 200 && b - a > 16 * rounding::ulp * size(b); ++step) {
-      double t = step % 4 == 3 ? a + 0.5 * (b - a) : b - fb * (b - a) / (fb - fa);
-      if (!(t > a && t < b)) t = a + 0.5 * (b - a);
-      if (!(t > a && t < b)) break;
-      const double ft = at(t) - 1;
-      if ((ft >= 0) == (piece.at_begin == Side::Inside)) {
-        a = t, fa = ft;
-        if (stays < 0) fb *= 0.5;
-        stays = -1;
-      } else {
-        b = t, fb = ft;
-        if (stays > 0) fa *= 0.5;
-        stays = 1;
-      }
-    }
-    return b;
+  // The one change of side [Alefeld, Potra, Shi 1995]. The end on the far side is returned: t is never before the
+  // surface.
+  double placed(const Piece& piece) {
+    constexpr double least = 1e-300, most = 1e100;  // 1 is inside; on skeletons the field is infinite
+    const auto above = [&](double t) {
+      const double f = at(t) - 1;
+      return f == 0 ? least : std::min(f, most);
+    };
+    // As it was told before, though rounding may say otherwise now.
+    const auto on_side = [&](double t, Side known) {
+      const double off = std::clamp(std::fabs(at(t) - 1), least, most);
+      return known == Side::Inside ? off : -off;
+    };
+    const auto near_enough = [&](double a, double b) { return b - a <= 16 * rounding::ulp * size(b); };
+    if (near_enough(piece.begin, piece.end)) return piece.end;
+    std::uintmax_t most_steps = 100;
+    return boost::math::tools::toms748_solve(above, piece.begin, piece.end, on_side(piece.begin, piece.at_begin),
+                                             on_side(piece.end, piece.at_end), near_enough, most_steps)
+        .second;
   }
 
   const FieldTree& tree_;
