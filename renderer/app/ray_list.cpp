@@ -1,5 +1,6 @@
 #include "renderer/app/ray_list.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -33,7 +34,13 @@ double ListedRay::unit() const {
   return scale * length(direction / scale);
 }
 
-Ray ListedRay::ray() const { return {origin, normalize(direction), t_min * unit(), t_max * unit()}; }
+// Products are rounded: the range is as much wider, so that a t that was told is found again by a range which ends
+// there.
+Ray ListedRay::ray() const {
+  return {origin, normalize(direction), t_min * unit() * (1 - 0x1p-52), t_max * unit() * (1 + 0x1p-52)};
+}
+
+double ListedRay::t_of(double distance) const { return std::clamp(distance / unit(), t_min, t_max); }
 
 Result<std::vector<ListedRay>> read_rays(std::istream& in, const std::string& name, SourceCache& sources) {
   std::vector<ListedRay> rays;

@@ -22,6 +22,8 @@ struct ListedRay {
   Ray ray() const;
   /// |direction|, also where its square is beyond doubles.
   double unit() const;
+  /// The t of a place so far along that ray.
+  double t_of(double distance) const;
 };
 
 /// One ray a line: its origin, its direction and, if wanted, t_min and t_max, the latter a number or `inf`; as

@@ -66,7 +66,7 @@ void trace_all(const Surfaces& surfaces, std::span<const ListedRay> rays, bool o
 
 std::string text_of(const SurfaceHit& hit, const ListedRay& ray, const SceneDescription& scene) {
   return fmt::format(R"(, "t": {}, "position": {}, "normal": {}, "outside": {}, "object": {}, "material": {})",
-                     json(hit.t / ray.unit()), json(hit.position), json(hit.normal.vec()), json(hit.outside),
+                     json(ray.t_of(hit.t)), json(hit.position), json(hit.normal.vec()), json(hit.outside),
                      json(scene.objects[hit.object.index()].name), json(scene.materials[hit.material.index()].name));
 }
 

@@ -24,8 +24,8 @@ TEST(RayList, HasARangeOrNone) {
     EXPECT_EQ(ray.unit(), 5);
     EXPECT_EQ(ray.ray().direction.vec(), (Vec3d{0, 0.6, 0.8}));
   }
-  EXPECT_EQ((*found)[1].ray().t_min, 2.5);
-  EXPECT_EQ((*found)[1].ray().t_max, 10);
+  EXPECT_DOUBLE_EQ((*found)[1].ray().t_min, 2.5);
+  EXPECT_DOUBLE_EQ((*found)[1].ray().t_max, 10);
   for (const std::size_t endless : {0u, 2u}) EXPECT_EQ((*found)[endless].ray().t_max, Ray{}.t_max);
 }
 
