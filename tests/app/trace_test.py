@@ -4,6 +4,7 @@ import math
 import signal
 import subprocess
 import unittest
+from random import Random
 
 from marrow_program import POINT, PROGRAM, TWO_OBJECTS, ProgramTest
 
@@ -59,6 +60,28 @@ class TraceTest(ProgramTest):
         self.assertAlmostEqual(behind["t"], 3.5, 6)
         done = self.expect(0, "trace", "ball.yaml", "--rays", "-", stdin="0 0 6 0 0 -1 5.5 inf\n")
         self.assertAlmostEqual(json.loads(done.stdout)[0]["t"], 7, 6)
+
+    def test_a_range_that_ends_where_the_ray_hits_holds_the_hit(self):
+        random = Random(20261127)
+        rays = [(0, 0, 0.5, *(random.gauss(0, 3) for _ in range(3))) for _ in range(500)]
+        found = [answer["t"] for answer in self.trace(self.ball(), rays)]
+        again = self.trace("ball.yaml", [(*ray, 0, t) for ray, t in zip(rays, found)])
+        self.assertEqual([answer.get("t") for answer in again], found)
+        below = [math.nextafter(t, 0) for t in found]
+        for answer, end in zip(self.trace("ball.yaml", [(*ray, 0, t) for ray, t in zip(rays, below)]), below):
+            self.assertLessEqual(answer.get("t", 0), end)
+
+    def test_a_segment_of_millions_of_radii_is_met_where_it_is(self):
+        self.write("long.yaml", """marrow: 1
+objects:
+  - name: wire
+    field: {segment: {from: [-1e6, 0, 0], to: [1e6, 0, 0], radius: 0.01}}
+""")
+        beside = [0.0099 * (i - 50) / 50 for i in range(101)]
+        rays = [(9e5 * math.sin(i), y, 5, 0, 0, -1) for i, y in enumerate(beside)]
+        for answer, y in zip(self.trace("long.yaml", rays), beside):
+            self.assertTrue(answer["hit"] and answer["certified"])
+            self.assertAlmostEqual(answer["t"], 5 - math.sqrt(1e-4 - y * y), 7)
 
     def test_all_objects_of_the_scene_are_met(self):
         rays = [(0, 0, 6, 0, 0, -1), (2, 0, 6, 0, 0, -1), (9, 0, 0, 0, -1, 0), (9, 0, 0, 0, 1, 0)]
