@@ -38,11 +38,14 @@ double turn(const TriangleSkeleton& s, double distance, double rho, const Interv
 }
 double turn(const ArcSkeleton&, double, double, const Interval&) { return inf; }
 
+// Also of numbers that root() does not take.
+double any_root(double x, int degree) { return x > 1e-300 && x < 1e300 ? root(x, degree) : pow(x, 1.0 / degree); }
+
 // The scaled distance e where it is off by `moved` at most from where the field is f. The compact kernel tells of it
 // within its support only.
 Interval scaled_near(const Kernel& kernel, double f, double moved) {
   if (kernel.family == KernelFamily::Inverse) {
-    const double e = std::isfinite(f) ? pow(f, -1.0 / (kernel.degree - 1)) : 0, by = moved + 1e-10 * e;
+    const double e = std::isfinite(f) ? 1 / any_root(f, kernel.degree - 1) : 0, by = moved + 1e-10 * e;
     return {e - by, e + by};
   }
   const Profile profile(kernel, 0);
@@ -51,7 +54,7 @@ Interval scaled_near(const Kernel& kernel, double f, double moved) {
   const double size = is_compact ? kernel.shape : 1 / kernel.shape;
   // (e / size)^2 from k; a relative 1e-9 of it or of 1 stands for the error of the sample.
   const double ratio = std::min(1.0, f * profile.normalisation());
-  const double y = is_compact ? 1 - pow(ratio, 2.0 / m) : ratio > 0 ? pow(ratio, -2.0 / m) - 1 : inf;
+  const double power = square(any_root(ratio, m)), y = is_compact ? 1 - power : 1 / power - 1;
   return {std::max(0.0, size * std::sqrt(std::max(0.0, y - 1e-9 * (1 + y))) - moved),
           f > 0 ? size * std::sqrt(y + 1e-9 * (1 + y)) + moved : inf};
 }

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -90,6 +91,8 @@ std::vector<LeafWeight> leaf_weights(const FieldTree&, const Vec3d& p, std::uint
 
 /// The weights of the leaves by material; that of a blend is shared out among its primitives.
 MaterialWeights material_weights(const FieldTree&, const Vec3d& p, std::uint32_t record = FieldTree::whole);
+/// That of all leaves, if they have the same; invalid: the object's own.
+std::optional<MaterialId> only_material(const FieldTree&);
 /// The material with the largest weight; invalid: the object's own.
 MaterialId strongest_material(const FieldTree&, const Vec3d& p, std::uint32_t record = FieldTree::whole);
 

@@ -109,6 +109,26 @@ MaterialWeights material_weights(const FieldTree& tree, const Vec3d& p, std::uin
   return all;
 }
 
+std::optional<MaterialId> only_material(const FieldTree& tree) {
+  std::optional<MaterialId> only;
+  bool is_only = true;
+  const auto take = [&](MaterialId material) {
+    is_only = is_only && material == only.value_or(material);
+    only = material;
+  };
+  for (const FieldTree::Record& record : tree.records()) {
+    const TreeNode& node = tree.node(record);
+    if (record.child_count > 0 || std::holds_alternative<CrispUnion>(node)) continue;  // a union of nothing is 0
+    const auto* blend = std::get_if<BlendLeaf>(&node);
+    if (blend == nullptr) take(record.material);
+    else
+      blend->field->for_each_list([&](const auto& list) {
+        for (std::size_t i = 0; i < list.size(); ++i) take(list.material(i));
+      });
+  }
+  return is_only ? only : std::nullopt;
+}
+
 MaterialId strongest_material(const FieldTree& tree, const Vec3d& p, std::uint32_t below) {
   return strongest(material_weights(tree, p, below));
 }

@@ -108,7 +108,7 @@ class Search {
     }
     const double middle = piece.begin + 0.5 * (piece.end - piece.begin);
     if (!known) {
-      split(piece, middle, middle, side(middle));
+      split(piece, middle, middle, Side::Unknown);
       return;
     }
     // The field moves from its value in the middle by no more than its slope allows: that clears the middle.

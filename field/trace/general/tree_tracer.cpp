@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include "field/trace/general/crossing.h"
+#include "field/trace/general/tree_fields.h"
 
 namespace marrow {
 namespace {
@@ -217,77 +218,6 @@ bool TreeTracer::is_joint(std::uint32_t member, const Ray& ray, double t) const 
     }
   }
   return true;
-}
-
-// Of those that can be 1 at p, a point.
-template <Number X>
-X TreeTracer::largest_of_others(std::uint32_t member, const Vec3<X>& p) const {
-  X largest(0.0);
-  const Vec3d at{lower(p.x), lower(p.y), lower(p.z)};
-  for (const Member& other : members_)
-    if (other.record != member && other.bounds.contains(at)) largest = max(largest, value(tree_, p, other.record));
-  return largest;
-}
-
-// use(tree, record) of what is equal to the member at p.
-template <class Use>
-auto TreeTracer::with_field_near(const Cell& cell, const Vec3d& p, const Use& use) const {
-  const bool is_near = cell.part != nullptr && cell.part->holds(p);
-  return is_near ? use(cell.part->leaf_at(p).tree(), FieldTree::whole) : use(tree_, cell.member);
-}
-
-// The shortest of growing steps after which the field is certainly below 1, as far as sums over points are off from it
-// (field/tree/README.md). Where no bounds tell that within a thousandth of the cell, the shortest after which what is
-// summed is certainly below 1, or is so by more than `likely`.
-std::optional<Vec3d> TreeTracer::outside_along(const Cell& c, const Vec3d& position, const Vec3d& direction,
-                                               double likely) const {
-  constexpr double longest = 1e-3, rounding_of_sums = 1e-12, error_of_sums = 2e-7;
-  const double off = c.part != nullptr ? error_of_sums : rounding_of_sums;
-  std::optional<Vec3d> summed;
-  const double shortest = 4 * rounding::ulp * std::max(largest_coordinate(c.box), c.box.size().x);
-  for (double step = shortest; step < std::max(longest * c.box.size().x, 64 * shortest); step *= 4) {
-    const Vec3d p = position + direction * step;
-    const auto field_at = [&]<Number X>(const Vec3<X>& there) {
-      const auto own = [&](const FieldTree& tree, std::uint32_t record) { return value(tree, there, record); };
-      return max(with_field_near(c, p, own), largest_of_others(c.member, there));
-    };
-    const Interval enclosed = field_at(Vec3<Interval>{Interval(p.x), Interval(p.y), Interval(p.z)});
-    if (enclosed.hi < 1 - off) return p;
-    if (summed) continue;
-    if (enclosed.hi < 1 - rounding_of_sums || (enclosed.lo < 1 && field_at(p) < 1 - likely)) summed = p;
-  }
-  return summed;
-}
-
-SurfacePoint TreeTracer::surface_at(std::size_t cell, const Vec3d& position, const Vec3d& along) const {
-  using X = Jet<double, 3>;
-  const Cell& c = cells_[cell];
-  const Vec3<X> at{X::variable(position.x, 0), X::variable(position.y, 1), X::variable(position.z, 2)};
-  const X f = with_field_near(c, position,
-                              [&](const FieldTree& tree, std::uint32_t record) { return value(tree, at, record); });
-  const X others = largest_of_others(c.member, at);
-  const auto outward = [](const X& g) { return normalize(Vec3d{-g.slope[0], -g.slope[1], -g.slope[2]}); };
-  const UnitVec3 normal = outward(f);
-  // Beside another member: away from both, or from one and back.
-  const Vec3d away = others.value > 0 ? outward(others).vec() : normal.vec();
-  const Vec3d ways[] = {normal, normal.vec() + away, -along, away - along, normal.vec() - along, along};
-  for (const double likely : {1e-6, 1e-13})  // more than sums are off; no more than rounding
-    for (const Vec3d& way : ways)
-      if (const auto outside = outside_along(c, position, way, likely))
-        return {.normal = normal, .outside = *outside, .around = {}};
-  // At an edge of a face in whose plane the ray runs, all these ways may lie in it: aslant to all sides.
-  const Frame frame = Frame::around(normal);
-  for (const double x : {-1, 0, 1})
-    for (const double y : {-1, 0, 1})
-      if (const auto outside = outside_along(c, position, frame.to_world({x, y, 1}), 1e-13))
-        return {.normal = normal, .outside = *outside, .around = {}};
-  return {.normal = normal, .outside = position, .around = {}};
-}
-
-MaterialId TreeTracer::material_at(std::size_t cell, const Vec3d& position) const {
-  return with_field_near(cells_[cell], position, [&](const FieldTree& tree, std::uint32_t record) {
-    return strongest_material(tree, position, record);
-  });
 }
 
 std::size_t TreeTracer::bytes() const {

@@ -59,8 +59,10 @@ class TreeTracer {
     std::uint32_t member;  ///< record of the whole tree
     const TreeCell* part;  ///< equal to the member in the box and a little beyond; null: the member itself
   };
-  explicit TreeTracer(FieldTree tree) : tree_(std::move(tree)) {}
+  explicit TreeTracer(FieldTree tree) : tree_(std::move(tree)), only_material_(only_material(tree_)) {}
   void divide(const Member&);
+  static double shortest_step(const Cell&);
+  std::optional<Vec3d> outside_by_slope(const Cell&, const Vec3d& position, const UnitVec3& normal, double slope) const;
   std::optional<Vec3d> outside_along(const Cell&, const Vec3d& position, const Vec3d& direction, double likely) const;
   bool is_inside_another(std::uint32_t member, const Box3&) const;
   bool is_covered(std::uint32_t member, const Ray&, double t) const;
@@ -68,10 +70,14 @@ class TreeTracer {
   bool is_joint(std::uint32_t member, const Ray&, double t) const;
   template <Number X>
   X largest_of_others(std::uint32_t member, const Vec3<X>& p) const;
+  template <Number X>
+  X field_near(const Cell&, const Vec3d& p, const Vec3<X>& there) const;
+  Interval field_enclosed(const Cell&, const Vec3d& p) const;
   template <class Use>
   auto with_field_near(const Cell&, const Vec3d& p, const Use&) const;
 
   FieldTree tree_;
+  std::optional<MaterialId> only_material_;  ///< of all leaves
   Box3 bounds_;
   std::vector<Member> members_;  ///< of a union, where there are few enough to ask all of them at a crossing
   std::vector<std::unique_ptr<const TreeCell>> roots_;

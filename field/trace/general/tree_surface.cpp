@@ -1,0 +1,85 @@
+// What is there at a hit: the normal, a place outside for further rays, the material.
+#include <algorithm>
+
+#include "field/trace/general/tree_fields.h"
+
+namespace marrow {
+namespace {
+
+// By which sums over points are off (field/tree/README.md), and those over all primitives.
+constexpr double error_of_local_sums = 2e-7, rounding_of_sums = 1e-12;
+constexpr double longest_step = 1e-3;  // of the cell, beside a hit
+
+}  // namespace
+
+Interval TreeTracer::field_enclosed(const Cell& c, const Vec3d& p) const {
+  return field_near(c, p, Vec3<Interval>{Interval(p.x), Interval(p.y), Interval(p.z)});
+}
+
+// The shortest of growing steps after which the field is certainly below 1, as far as what is summed is off from it.
+// Where no bounds tell that within a thousandth of the cell, the shortest after which what is summed is certainly
+// below 1, or is so by more than `likely`.
+std::optional<Vec3d> TreeTracer::outside_along(const Cell& c, const Vec3d& position, const Vec3d& direction,
+                                               double likely) const {
+  const double off = c.part != nullptr ? error_of_local_sums : rounding_of_sums;
+  std::optional<Vec3d> summed;
+  const double shortest = shortest_step(c);
+  for (double step = shortest; step < std::max(longest_step * c.box.size().x, 64 * shortest); step *= 4) {
+    const Vec3d p = position + direction * step;
+    const Interval enclosed = field_enclosed(c, p);
+    if (enclosed.hi < 1 - off) return p;
+    if (summed) continue;
+    if (enclosed.hi < 1 - rounding_of_sums || (enclosed.lo < 1 && field_near(c, p, p) < 1 - likely)) summed = p;
+  }
+  return summed;
+}
+
+double TreeTracer::shortest_step(const Cell& c) {
+  return 4 * rounding::ulp * std::max(largest_coordinate(c.box), c.box.size().x);
+}
+
+// The same at once, where the slope tells how far it is: at nearly all hits.
+std::optional<Vec3d> TreeTracer::outside_by_slope(const Cell& c, const Vec3d& position, const UnitVec3& normal,
+                                                  double slope) const {
+  const double off = c.part != nullptr ? error_of_local_sums : rounding_of_sums;
+  const double step = std::max(1.5 * off / slope, shortest_step(c));
+  if (!(step < longest_step * c.box.size().x)) return {};
+  const Vec3d p = position + normal.vec() * step;
+  return field_enclosed(c, p).hi < 1 - off ? std::optional(p) : std::nullopt;
+}
+
+SurfacePoint TreeTracer::surface_at(std::size_t cell, const Vec3d& position, const Vec3d& along) const {
+  using X = Jet<double, 3>;
+  const Cell& c = cells_[cell];
+  const Vec3<X> at{X::variable(position.x, 0), X::variable(position.y, 1), X::variable(position.z, 2)};
+  const X f = with_field_near(c, position,
+                              [&](const FieldTree& tree, std::uint32_t record) { return value(tree, at, record); });
+  const X others = largest_of_others(c.member, at);
+  const auto outward = [](const X& g) { return normalize(Vec3d{-g.slope[0], -g.slope[1], -g.slope[2]}); };
+  const UnitVec3 normal = outward(f);
+  if (const auto outside = outside_by_slope(c, position, normal, length(Vec3d{f.slope[0], f.slope[1], f.slope[2]})))
+    return {.normal = normal, .outside = *outside, .around = {}};
+  // Beside another member: away from both, or from one and back.
+  const Vec3d away = others.value > 0 ? outward(others).vec() : normal.vec();
+  const Vec3d ways[] = {normal, normal.vec() + away, -along, away - along, normal.vec() - along, along};
+  for (const double likely : {1e-6, 1e-13})  // more than sums are off; no more than rounding
+    for (const Vec3d& way : ways)
+      if (const auto outside = outside_along(c, position, way, likely))
+        return {.normal = normal, .outside = *outside, .around = {}};
+  // At an edge of a face in whose plane the ray runs, all these ways may lie in it: aslant to all sides.
+  const Frame frame = Frame::around(normal);
+  for (const double x : {-1, 0, 1})
+    for (const double y : {-1, 0, 1})
+      if (const auto outside = outside_along(c, position, frame.to_world({x, y, 1}), 1e-13))
+        return {.normal = normal, .outside = *outside, .around = {}};
+  return {.normal = normal, .outside = position, .around = {}};
+}
+
+MaterialId TreeTracer::material_at(std::size_t cell, const Vec3d& position) const {
+  if (only_material_) return *only_material_;
+  return with_field_near(cells_[cell], position, [&](const FieldTree& tree, std::uint32_t record) {
+    return strongest_material(tree, position, record);
+  });
+}
+
+}  // namespace marrow
