@@ -37,15 +37,6 @@ Interval way_of(const TreeScene& scene, const Ray& ray) {
   return {std::max(0.0, middle - reach), std::max(0.0, middle + reach)};
 }
 
-// Where a ray that begins on the surface, to within what sums tell, is clearly on one side.
-double decided_from(const TreeScene& scene, const Ray& ray) {
-  const auto is_decided = [&](double t) { return std::fabs(scene.value(ray.at(t)) - 1) > noticed; };
-  if (is_decided(0)) return 0;
-  double t = 1e-12 * scene.size();
-  while (t < 0.1 * scene.size() && !is_decided(t)) t *= 2;
-  return t;
-}
-
 struct Slopes {
   double value, along, steepness;
 };
@@ -57,11 +48,29 @@ Slopes slopes_at(const TreeScene& scene, const Ray& ray, double t) {
   return {f.value, std::fabs(dot(gradient, ray.direction.vec())), length(gradient)};
 }
 
+// By which places of a ray may be off.
+double position_error(const TreeScene& scene, const Ray& ray) {
+  return 16 * rounding::ulp * std::max(largest_coordinate(scene.cells()), max_component(abs(ray.origin)));
+}
+
+// Where a ray that begins on the surface, to within what sums and coordinates tell, is clearly on one side.
+double decided_from(const TreeScene& scene, const Ray& ray) {
+  const double moved = position_error(scene, ray);
+  const auto is_decided = [&](double t) {
+    const Slopes at = slopes_at(scene, ray, t);
+    return std::fabs(at.value - 1) > noticed + moved * at.steepness;
+  };
+  if (is_decided(0)) return 0;
+  double t = 1e-12 * scene.size();
+  while (t < 0.1 * scene.size() && !is_decided(t)) t *= 2;
+  return t;
+}
+
 // How far the errors of sums, of positions in double and of floats move a hit.
 double slack_of(const TreeScene& scene, const Ray& ray, double t, const Slopes& at) {
-  const double coordinates = std::max(largest_coordinate(scene.cells()), max_component(abs(ray.origin)));
-  const double moved = at.along > 0 ? (sum_error + 16 * rounding::ulp * coordinates * at.steepness) / at.along : 0;
-  return std::min(4 * ulp_of_float(t) + moved + 16 * rounding::ulp * coordinates, 1e-3 * scene.size());
+  const double off = position_error(scene, ray);
+  const double moved = at.along > 0 ? (sum_error + off * at.steepness) / at.along : 0;
+  return std::min(4 * ulp_of_float(t) + moved + off, 1e-3 * scene.size());
 }
 
 bool changes_near(const ChangeSearch& along, double t, double slack) {
