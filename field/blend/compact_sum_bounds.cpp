@@ -41,19 +41,24 @@ double most_changed(const Profile& profile, const Kernel& kernel, double step) {
                                : 3 / (R * R) / profile.normalisation() * (step + std::sqrt(2 * R * step)) * (1 + 1e-9);
 }
 
-// How far the second derivatives of the kernel change over a scaled step, of what either support `held`
-// and where `crossed` of it comes in or goes, at most: with w = 1 - y they are -a w^(h-1) + b w^(h-2) v v^T, a =
-// 2h/R^2, b = 4h(h-1)/R^4, h = m/2. Below h = 3 powers below 1 change by that power of the change of w, 2 step / R;
-// w^0 by 1 at the edge only.
-double bend_changes(const Profile& profile, const Kernel& kernel, const CompactSteepness& steepness, double step,
-                    double held, double crossed) {
+// How far second derivatives change over a way, at most: evenly along it, and as a root of it or at once.
+struct BendChanges {
+  double even = 0, sudden = 0;
+
+  double in_all() const { return even + sudden; }
+};
+
+// Of the kernel over a scaled step, of what either support `held` and where `crossed` of it comes in or goes: with w =
+// 1 - y its second derivatives are -a w^(h-1) + b w^(h-2) v v^T, a = 2h/R^2, b = 4h(h-1)/R^4, h = m/2. Over the step w
+// changes by 2 step / R; for h = 5/2 its root by the root of that, and for h = 2 w^0 by 1 at the edge.
+BendChanges bend_changes(const Profile& profile, const Kernel& kernel, const CompactSteepness& steepness, double step,
+                         double held, double crossed) {
   const double R = kernel.shape, h = 0.5 * profile.degree(), by = 2 * step / R;
-  if (h < 2 || crossed == inf) return inf;
-  if (h >= 3) return steepness.third() * step * held;
-  const double a = 2 * h / (R * R), b = 4 * h * (h - 1) / (R * R * R * R);
-  const auto change = [&](double power) { return power >= 1 ? power * by : std::sqrt(by); };
-  const double at_edge = h > 2 ? held * change(h - 2) : crossed;
-  return (held * (a * change(h - 1) + 2 * b * R * step) + b * R * R * at_edge) / profile.normalisation() * (1 + 1e-9);
+  if (h < 2 || crossed == inf) return {0, inf};
+  if (h >= 3) return {steepness.third() * step * held};
+  const double a = 2 * h / (R * R), b = 4 * h * (h - 1) / (R * R * R * R), scale = (1 + 1e-9) / profile.normalisation();
+  const double at_edge = h > 2 ? held * std::sqrt(by) : crossed;
+  return {scale * held * (a * (h - 1) * by + 2 * b * R * step), scale * b * R * R * at_edge};
 }
 
 // A stretch beside a straight skeleton of one radius. Along that, f changes by the kernel at its ends alone: with x the
@@ -146,10 +151,12 @@ Changes changes_of(const auto& s, const Asked& asked) {
             .S = most_changed(profile, kernel, rho / least) * held * (largest / least),
             .radius = largest};
   if (bend < inf) {
-    c.J = bend_changes(profile, kernel, steepness, across / least, held_of(s, reach + across, near),
-                       share_crossing(s, center, across, kernel.shape, is_along)) /
-          least;
-    c.S_beyond_J = c.J * across * (profile.degree() >= 6 ? 0.5 : 1);  // where J changes by as much for each step
+    const bool is_steady = profile.degree() >= 6;  // its second derivatives do not jump at the edge, nor bend there
+    const double crossed = is_steady ? 0 : share_crossing(s, center, across, kernel.shape, is_along);
+    const BendChanges changes =
+        bend_changes(profile, kernel, steepness, across / least, held_of(s, reach + across, near), crossed);
+    c.J = changes.in_all() / least;
+    c.S_beyond_J = (0.5 * changes.even + changes.sudden) / least * across;
   }
   return c;
 }
