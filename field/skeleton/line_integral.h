@@ -138,8 +138,8 @@ void integrate_inverse(const Line& line, const Kernel& kernel, const Visit& visi
 }
 
 /// Calls visit(t, dt) such that sums of k(d/tau) times a polynomial of low degree are integrals along the line, to
-/// 1e-13. The compact kernel is that of a curve, of the kernel's degree. Precondition: the point is not on the line
-/// under the inverse kernel.
+/// 1e-13. `dimension`: of the skeleton that the line is of, 1 or 2, by which the power of the compact kernel goes
+/// (Profile). Precondition: the point is not on the line under the inverse kernel.
 template <class Visit>
 void integrate_line(const Line& line, const Kernel& kernel, int dimension, const Visit& visit) {
   if (kernel.family == KernelFamily::Inverse) integrate_inverse(line, kernel, visit);
