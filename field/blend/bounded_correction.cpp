@@ -15,9 +15,6 @@ constexpr double smallest_field = 1e-60;  // powers of less leave the range of d
 // +1 for Cauchy, -1 for compact: the sign of h^2 in w.
 double sign_of(const Kernel& kernel) { return kernel.family == KernelFamily::Cauchy ? 1 : -1; }
 
-// k = (w / w_1)^(-sign p).
-double exponent_of(const Kernel& kernel) { return (kernel.degree - sign_of(kernel)) / 2; }
-
 double unit_w_of(const Kernel& kernel) {
   const double shape_squared = kernel.shape * kernel.shape;
   return kernel.family == KernelFamily::Cauchy ? 1 + 1 / shape_squared : shape_squared - 1;
@@ -79,7 +76,7 @@ ProjectedSlopes BoundedCorrection::projected_slopes(double f, double G) const {
 
 // From f: w; from G: h = G / (2 psi).
 BoundedCorrection::Pair BoundedCorrection::pair_at(double f, double G) const {
-  const double sign = sign_of(kernel_), p = exponent_of(kernel_), u = root(f / 2, twice_p());
+  const double sign = sign_of(kernel_), p = curve_.field_power(), u = root(f / 2, curve_.twice_field_power());
   const double w = sign > 0 ? w_1_ / (u * u) : w_1_ * (u * u), psi = p * f / w, h = G / (2 * psi);
   return {w, psi, h, w - sign * (h * h)};
 }
@@ -108,12 +105,13 @@ double BoundedCorrection::critical_height(double B) const {
 std::optional<BoundedCorrection::TwoSkeletons> BoundedCorrection::behind_critical_point(double f, double G) const {
   if (!cavity_) return {};
   const Pair here = pair_at(f, G);
-  const double n = kernel_.degree, sign = sign_of(kernel_), p = exponent_of(kernel_);
+  const double n = kernel_.degree, sign = sign_of(kernel_), p = curve_.field_power();
   if (!(cos_ * (here.B - n * (here.h * here.h)) - sin_ * here.h * here.w > 0)) return {};
   Pair critical{.w = 0, .psi = 0, .h = critical_height(here.B), .B = here.B};
   critical.w = here.B + sign * (critical.h * critical.h);
   // k falls (rises) with w as its power; taken from here to there, so that nothing is lost
-  const double f_critical = f * half_power(sign > 0 ? here.w / critical.w : critical.w / here.w, twice_p());
+  const double f_critical =
+      f * half_power(sign > 0 ? here.w / critical.w : critical.w / here.w, curve_.twice_field_power());
   critical.psi = p * f_critical / critical.w;
   return TwoSkeletons{here, critical};
 }
@@ -126,7 +124,7 @@ BoundedCorrection::Place BoundedCorrection::projected_from(double f, double G) c
   const auto two = f > smallest_field ? behind_critical_point(f, G) : std::nullopt;
   if (!two) return {f, G};
   const Pair& D = two->critical;
-  return {D.psi * D.w / exponent_of(kernel_), 2 * D.psi * D.h};
+  return {D.psi * D.w / curve_.field_power(), 2 * D.psi * D.h};
 }
 
 double BoundedCorrection::value(double f, double G) const {
@@ -138,7 +136,7 @@ CorrectionPartials BoundedCorrection::partials(double f, double G) const {
   if (!(f > smallest_field)) return {.value = std::max(f, 0.0), .df = 1, .dG = 0, .dG_over_G = 0, .dalpha = 0};
   const auto two = behind_critical_point(f, G);
   if (!two) return projected_slopes(f, G).partials_at(G);
-  const double n = kernel_.degree, sign = sign_of(kernel_), p = exponent_of(kernel_);
+  const double n = kernel_.degree, sign = sign_of(kernel_), p = curve_.field_power();
   const auto& [here, D] = *two;
   const double h = D.h, D_f = D.psi * D.w / p, D_G = 2 * D.psi * h;
   const ProjectedSlopes at_D = projected_slopes(D_f, D_G);

@@ -49,6 +49,8 @@ class BoundedCorrection {
     double B;    ///< w -+ h^2
   };
   Pair pair_at(double f, double G) const;
+  /// The w at the surface of a unit skeleton: k = (w / w_1)^(-+p).
+  double unit_w() const { return w_1_; }
   /// h of the critical point: rises with B, falls with alpha; h^2 <= B / n.
   double critical_height(double B) const;
   /// C without the cavity branch; monotone in alpha.
@@ -71,7 +73,6 @@ class BoundedCorrection {
     Chord(const BoundedCorrection&, const BoundedCurve::Place&, double G);
   };
 
-  int twice_p() const { return kernel_.family == KernelFamily::Cauchy ? kernel_.degree - 1 : kernel_.degree + 1; }
   bool is_on_chord(const BoundedCurve::Place&, double G) const;
   double projected(const BoundedCurve::Place&, double G) const;
   ProjectedSlopes projected_slopes(double f, double G) const;
@@ -80,8 +81,7 @@ class BoundedCorrection {
 
   Kernel kernel_;
   BoundedCurve curve_;
-  double w_1_;  // of a unit skeleton at its surface
-  double sin_ = 0, cos_ = 1;
+  double w_1_, sin_, cos_;
   bool cavity_;
   Projection projection_;
 };

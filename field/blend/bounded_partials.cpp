@@ -21,13 +21,13 @@ struct Powers {
   double n, sign, p, w_1;
   int degree, twice_p;
 
-  explicit Powers(const Kernel& kernel)
-      : n(kernel.degree),
-        sign(kernel.family == KernelFamily::Cauchy ? 1 : -1),
-        p((n - sign) / 2),
-        w_1(sign > 0 ? 1 + 1 / square(kernel.shape) : square(kernel.shape) - 1),
-        degree(kernel.degree),
-        twice_p(sign > 0 ? degree - 1 : degree + 1) {}
+  explicit Powers(const BoundedCorrection& c)
+      : n(c.kernel().degree),
+        sign(c.kernel().family == KernelFamily::Cauchy ? 1 : -1),
+        p(c.curve().field_power()),
+        w_1(c.unit_w()),
+        degree(c.kernel().degree),
+        twice_p(c.curve().twice_field_power()) {}
 
   // Where B = n h^2 on M, which holds all places behind critical points:  f^2 = (n + sign) G^2 w / (4 p^2). With f =
   // 2 u^(2p), w = w_1 u^(-2 sign) that is u^n = G sqrt((n + sign) w_1) / (4p).
@@ -118,7 +118,7 @@ PartialBounds bounded_partials(const Correction& c, const Interval& alpha, const
   if (!c.cavity() || !least.in_cavity_branch(f.hi, G.lo)) return projection.at(value, f, G);
   const BoundedCorrection most =
       alpha.lo == alpha.hi ? least : BoundedCorrection(least.kernel(), alpha.hi, true, c.projection());
-  const PartialBounds behind = Behind(least, most, Powers(least.kernel()), f, G).partials(projection, value);
+  const PartialBounds behind = Behind(least, most, Powers(least), f, G).partials(projection, value);
   return most.in_cavity_branch(f.lo, G.hi) ? behind : hull(behind, projection.at(value, f, G));
 }
 

@@ -19,7 +19,7 @@ CurveBounds::CurveBounds(const BoundedCurve& curve) : curve_(curve) {
   const double e = curve.height_power(), p = curve.field_power(), v_top = e / (e + 1);
   // 2 v^2 - 3 v + e / (e+1) = 0
   const double v = 0.25 * (3 - std::sqrt(9 - 8 * v_top));
-  inflection_ = e < 2 * p ? 0 : curve.largest_field() * half_power(v, static_cast<int>(2 * p));
+  inflection_ = e < 2 * p ? 0 : curve.largest_field() * half_power(v, curve.twice_field_power());
   steepest_ = inflection_ > 0 ? curve.slope(inflection_) : rounding::inf;
   largest_ratio_ = std::max(1.0, e / (2 * p));
   slope_error_ = cancelled * (e + 1) * curve.top() / curve.top_field();

@@ -94,9 +94,7 @@ HessianJet second_order_bounded(const BoundedCorrection& plain, const Correction
   if (!behind) return projected(curve, rule.projection, f, G_squared, sine, cosine);
   const Kernel& kernel = rule.kernel;
   const double sign = kernel.family == KernelFamily::Cauchy ? 1 : -1, p = (kernel.degree - sign) / 2;
-  const double shape_squared = kernel.shape * kernel.shape;
-  const double w_1 = sign > 0 ? 1 + 1 / shape_squared : shape_squared - 1;
-  const X w = w_1 * pow(f * 0.5, -sign / p), psi = p * f / w;
+  const X w = plain.unit_w() * pow(f * 0.5, -sign / p), psi = p * f / w;
   const X B = w - sign * (G_squared / (4.0 * square(psi)));
   const X h = critical_height(kernel.degree, sign, B, sine, cosine);
   const X w_D = B + sign * square(h), f_D = f * pow(w_D / w, -sign * p), psi_D = p * f_D / w_D;

@@ -23,6 +23,7 @@ class BoundedCurve {
   double top_field() const { return f_top_; }      ///< f*
   double top() const { return g_top_; }            ///< g(f*)
   double field_power() const { return 0.5 * k_; }  ///< p
+  int twice_field_power() const { return k_; }     ///< 2p
   int height_power() const { return e_; }          ///< e
   double height_scale() const { return g_0_; }     ///< g_0
 
@@ -43,6 +44,7 @@ class BoundedCurve {
   /// |grad_S f| of a lone skeleton, on both branches: not continued.   Precondition: f <= largest_field().
   double alone_at(double f) const { return height_at(parameter(f)); }
   double slope(double f) const { return slope(place(f)); }
+  /// x_H.
   double inverse(double G) const { return place_of_height(G).f; }
   /// The x with g(x) c + x s = height; c, s >= 0, not both 0. Where c = 1, s = 0 and the height is above the top: f*.
   double on_line(double c, double s, double height) const;
