@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "field/math/taylor_remainder.h"
 #include "field/trace/sources/far_field.h"
 #include "tests/trace/random_scene.h"
 

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "field/math/taylor_remainder.h"
 #include "field/skeleton/skeletons.h"
 #include "field/trace/levels/level_polynomials.h"
 #include "field/trace/sources/kept_far_field.h"

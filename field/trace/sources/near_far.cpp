@@ -6,6 +6,7 @@
 
 #include "field/base/ask_for.h"
 #include "field/math/elementary.h"
+#include "field/math/taylor_remainder.h"
 #include "field/trace/kernels/cube_remainder.h"
 #include "field/trace/sources/near_groups.h"
 #include "field/trace/sources/source_groups.h"
