@@ -29,10 +29,13 @@ Vec3<Jet<Interval, 3>> with_slopes(const Box3& box) {
 
 bool excludes_zero(const Interval& x) { return x.lo > 0 || x.hi < 0; }
 
+// Of a cell, with some room to where its tree ends to hold.
+Box3 where_it_holds(const Box3& cell) { return cell.padded(0.25 * validity * cell.size().x); }
+
 bool is_fine_enough(const FieldTree& tree, bool shrinks, bool one_sheet, int level) {
   const std::size_t records = tree.records().size();
   if (records > many_records && shrinks && level < max_level_of_many) return false;
-  if (level < max_level_near && has_near_skeletons(tree)) return false;
+  if (level < max_level_near && is_mostly_near(tree)) return false;
   return level >= (records <= 1 ? max_level_of_leaf : max_level) || (one_sheet && level >= 2);
 }
 
@@ -61,11 +64,21 @@ std::unique_ptr<const TreeCell> TreeCell::root(const FieldTree& tree, const Box3
   return cell;
 }
 
-bool TreeCell::holds(const Vec3d& p) const { return box().padded(0.5 * validity * half_).contains(p); }
+bool TreeCell::holds(const Vec3d& p) const { return where_it_holds(box()).contains(p); }
+
+Box3 TreeCell::octant_box(std::size_t i) const {
+  const Vec3d center = octant_center(center_, half_, static_cast<int>(i));
+  return Box3{center, center}.padded(half_ / 2);
+}
+
+const TreeCell* TreeCell::octant(std::size_t i) const {
+  return octants_[i].get([&] { return std::make_unique<const Octant>(make_octant(i)); }).get();
+}
 
 // The octant, unless bounds prove all of it outside or inside.
-std::unique_ptr<const TreeCell> TreeCell::octant(int i) const {
-  std::unique_ptr<TreeCell> cell(new TreeCell(octant_center(center_, half_, i), half_ / 2, level_ + 1));
+std::unique_ptr<const TreeCell> TreeCell::make_octant(std::size_t i) const {
+  std::unique_ptr<TreeCell> cell(
+      new TreeCell(octant_center(center_, half_, static_cast<int>(i)), half_ / 2, level_ + 1));
   const Box3 around = cell->box().padded(cell->half_ * validity);
   // As the larger cube sums it: enough to drop most of what can be dropped, before anything is made for it.
   if (!value(*tree_, span_of(around)).contains(1)) return {};
@@ -80,32 +93,22 @@ std::unique_ptr<const TreeCell> TreeCell::octant(int i) const {
   return cell;
 }
 
-const TreeCell::Octants& TreeCell::octants() const {
-  return octants_.get([&] {
-    auto made = std::make_unique<Octants>();
-    for (int i = 0; i < 8; ++i) (*made)[static_cast<std::size_t>(i)] = octant(i);
-    return std::unique_ptr<const Octants>(std::move(made));
-  });
-}
-
 const TreeCell& TreeCell::leaf_at(const Vec3d& p) const {
   const TreeCell* here = this;
   while (!here->is_leaf_) {
-    const Octants& octants = here->octants();
-    const auto next = std::find_if(octants.begin(), octants.end(), [&](const auto& o) { return o && o->holds(p); });
-    if (next == octants.end()) break;
-    here = next->get();
+    const TreeCell* next = nullptr;
+    for (std::size_t i = 0; i < octant_count && next == nullptr; ++i)
+      if (where_it_holds(here->octant_box(i)).contains(p)) next = here->octant(i);
+    if (next == nullptr) break;
+    here = next;
   }
   return *here;
 }
 
 std::size_t TreeCell::bytes() const {
   double sum = sizeof *this + static_cast<double>(bytes_of(*tree_)) / static_cast<double>(tree_.use_count());
-  if (const Octants* made = octants_.peek()) {
-    sum += sizeof *made;
-    for (const auto& o : *made)
-      if (o) sum += static_cast<double>(o->bytes());
-  }
+  for (const auto& octant : octants_)
+    if (const Octant* made = octant.peek()) sum += sizeof *made + (*made ? static_cast<double>((*made)->bytes()) : 0);
   return static_cast<std::size_t>(sum);
 }
 

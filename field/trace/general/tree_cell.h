@@ -32,9 +32,10 @@ class TreeCell {
   bool is_leaf() const { return is_leaf_; }
   int level() const { return level_; }
 
-  /// The octants; null where bounds prove all of one outside or inside.
-  using Octants = std::array<std::unique_ptr<const TreeCell>, 8>;
-  const Octants& octants() const;
+  static constexpr std::size_t octant_count = 8;
+  /// One of them, made when it is first asked for; null where bounds prove all of it outside or inside.
+  const TreeCell* octant(std::size_t i) const;
+  Box3 octant_box(std::size_t i) const;
 
   /// The leaf around p, or, where p lies in none, the smallest cell.
   const TreeCell& leaf_at(const Vec3d& p) const;
@@ -44,14 +45,15 @@ class TreeCell {
 
  private:
   TreeCell(const Vec3d& center, double half, int level) : center_(center), half_(half), level_(level) {}
-  std::unique_ptr<const TreeCell> octant(int i) const;
+  std::unique_ptr<const TreeCell> make_octant(std::size_t i) const;
 
   Vec3d center_;
   double half_;
   int level_;
   bool is_leaf_ = false;
   std::shared_ptr<const FieldTree> tree_;  ///< may serve several cells
-  Lazy<Octants> octants_;
+  using Octant = std::unique_ptr<const TreeCell>;
+  std::array<Lazy<Octant>, octant_count> octants_;
 };
 
 }  // namespace marrow

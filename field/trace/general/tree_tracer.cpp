@@ -77,13 +77,15 @@ void TreeTracer::divide(const Member& member) {
   roots_.push_back(TreeCell::root(tree_, member.bounds, member.record));
   std::vector<const TreeCell*> level{roots_.back().get()};
   for (int depth = 1; !level.empty(); ++depth) {
-    tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) { level[i]->octants(); });
+    tbb::parallel_for(std::size_t{0}, level.size() * TreeCell::octant_count,
+                      [&](std::size_t i) { level[i / TreeCell::octant_count]->octant(i % TreeCell::octant_count); });
     std::vector<const TreeCell*> next;
     for (const TreeCell* parent : level)
-      for (const auto& octant : parent->octants()) {
-        if (!octant || is_inside_another(member.record, octant->box())) continue;
-        if (octant->is_leaf() || depth == first_levels) cells_.push_back({octant->box(), member.record, octant.get()});
-        else next.push_back(octant.get());
+      for (std::size_t i = 0; i < TreeCell::octant_count; ++i) {
+        const TreeCell* octant = parent->octant(i);
+        if (octant == nullptr || is_inside_another(member.record, octant->box())) continue;
+        if (octant->is_leaf() || depth == first_levels) cells_.push_back({octant->box(), member.record, octant});
+        else next.push_back(octant);
       }
     level = std::move(next);
   }
@@ -100,24 +102,26 @@ class CellSearch {
     if (cell.is_leaf()) return in(cell.tree(), FieldTree::whole, t, &cell);
     struct Stretch {
       Interval t;
-      const TreeCell* cell;
+      std::size_t octant;
     };
-    std::array<Stretch, 8> inside;
+    std::array<Stretch, TreeCell::octant_count> inside;
     std::size_t count = 0;
-    for (const auto& octant : cell.octants()) {
-      if (!octant) continue;
-      Interval part = clip(octant->box(), ray_);
+    for (std::size_t i = 0; i < TreeCell::octant_count; ++i) {
+      Interval part = clip(cell.octant_box(i), ray_);
       part.hi = std::min(part.hi, t.hi);
-      if (part.lo <= part.hi) inside[count++] = {part, octant.get()};
+      if (part.lo <= part.hi) inside[count++] = {part, i};
     }
     const auto end = inside.begin() + static_cast<std::ptrdiff_t>(count);
     std::stable_sort(inside.begin(), end, [](const Stretch& a, const Stretch& b) { return a.t.lo < b.t.lo; });
     std::optional<TreeHit> nearest;
-    for (auto s = inside.begin(); s != end && !(nearest && nearest->t < s->t.lo); ++s)
-      if (const auto hit = in(*s->cell, s->t); hit && !(nearest && nearest->t <= hit->t)) {
+    for (auto s = inside.begin(); s != end && !(nearest && nearest->t < s->t.lo); ++s) {
+      const TreeCell* octant = cell.octant(s->octant);
+      if (octant == nullptr) continue;
+      if (const auto hit = in(*octant, s->t); hit && !(nearest && nearest->t <= hit->t)) {
         nearest = hit;
         if (any_) break;
       }
+    }
     return nearest;
   }
 
