@@ -1,7 +1,11 @@
 #include "field/blend/local_blend.h"
 
+#include <array>
+#include <optional>
 #include <utility>
+#include <vector>
 
+#include "field/blend/far_expansion.h"
 #include "field/blend/source_maker.h"
 #include "field/blend/sum_bounds.h"
 #include "field/kernel/inverse_family.h"
@@ -31,6 +35,13 @@ void keep_reaching(const PrimitiveList<Skeleton>& from, double support, const Bo
   for (const Skeleton& s : from.skeletons)
     if (distance_to(s, center) <= rho + support * largest_radius(s)) to.skeletons.push_back(s);
 }
+
+// How many sources take the time of a polynomial, and of closed forms.
+constexpr std::size_t polynomial_is_worth = 400, point_is_worth = 20, segment_is_worth = 100, arc_is_worth = 20000;
+// Sources are gone through again where so many of them are far: lists of boxes in boxes shrink by it each time.
+constexpr double enough_far = 0.3;
+// A primitive becomes some eight sources, which share what it may be off by.
+constexpr double sources_of_primitive = 8;
 
 }  // namespace
 
@@ -76,24 +87,76 @@ std::shared_ptr<const LocalBlend> LocalBlend::make(const BlendField& blend, std:
     made->surfaces_ = std::move(maker.surfaces);
     made->f_error_ += maker.f_error;
     made->S_error_ += maker.S_error;
+    made->fold_far_sources(box);
   }
   rest.distance_segments = from.distance_segments;
   rest.distance_triangles = from.distance_triangles;
   rest.distance_arcs = from.distance_arcs;
   rest.cani_hornus_segments = from.cani_hornus_segments;
   const bool has_sources = !made->points_.empty() || !made->curves_.empty() || !made->surfaces_.empty();
-  return has_sources || rest.size() < from.size() ? made : outer;
+  return has_sources || made->far_ || rest.size() < from.size() ? made : outer;
+}
+
+const LocalBlend& LocalBlend::last() const {
+  const LocalBlend* here = this;
+  while (here->outer_) here = here->outer_.get();
+  return *here;
+}
+
+// All sources of the boxes around it anew: into a polynomial, or a list of its own.
+void LocalBlend::fold_far_sources(const Box3& box) {
+  const std::size_t all = source_count();
+  const FarPolynomial* const outer_far = last().far_.get();
+  const double share = 1 / (sources_of_primitive * static_cast<double>(blend_.size()));
+  FarExpansion expansion(box, blend_.kernel == KernelFamily::Cauchy, largest_error, share);
+  std::vector<std::optional<FarExpansion::View>> views;
+  std::size_t far = 0;
+  struct Near {
+    SourceSums list;
+    std::size_t count = 0;
+  };
+  std::array<Near, 3> near{
+      {{SourceSums(points_.exponent())}, {SourceSums(curves_.exponent())}, {SourceSums(surfaces_.exponent())}}};
+  const auto near_of = [&](const SourceSums& sums) -> Near& {
+    return near[static_cast<std::size_t>(sums.exponent() - points_.exponent())];
+  };
+  for_each_sums([&](const SourceSums& sums) {
+    for (std::size_t i = 0; i < sums.count(); ++i) {
+      views.push_back(expansion.seen(sums[i], sums.exponent()));
+      ++(views.back() ? far : near_of(sums).count);
+    }
+  });
+  if (static_cast<double>(far) < enough_far * static_cast<double>(all) ||
+      (outer_far == nullptr && far < polynomial_is_worth))
+    return;
+  for (Near& n : near) n.list.reserve(n.count);
+  auto view = views.begin();
+  for_each_sums([&](const SourceSums& sums) {
+    SourceSums& list = near_of(sums).list;
+    for (std::size_t i = 0; i < sums.count(); ++i, ++view)
+      if (*view) expansion.add(sums[i], sums.exponent(), **view);
+      else list.add(sums[i]);
+  });
+  far_ = expansion.polynomial(outer_far);
+  points_ = std::move(near[0].list);
+  curves_ = std::move(near[1].list);
+  surfaces_ = std::move(near[2].list);
+  f_error_ += expansion.f_error();
+  S_error_ += expansion.S_error();
+  outer_ = nullptr;
 }
 
 double LocalBlend::value(const Vec3d& p) const {
   SkeletonSample sum = sum_of_primitives<Derivatives::ScaleInvariant>(rest_, p);
   for_each_sums([&](const SourceSums& s) { sum += s.value_at(p); });
+  if (const FarPolynomial* far = last().far_.get()) sum += far->value_at(p);
   return correction_.value(sum.value, length(sum.si_gradient));
 }
 
 LocalBlend::Sample LocalBlend::evaluate(const Vec3d& p) const {
   SkeletonSample sum = sum_of_primitives<Derivatives::Second>(rest_, p);
   for_each_sums([&](const SourceSums& s) { sum += s.at(p).sum; });
+  if (const FarPolynomial* far = last().far_.get()) sum += far->at(p);
   const Correction::Partials c = correction_.partials(sum.value, length(sum.si_gradient));
   Vec3d gradient = sum.gradient * c.df;
   if (c.dG_over_G != 0) gradient += sum.si_jacobian.transposed_times(sum.si_gradient) * c.dG_over_G;
@@ -104,12 +167,20 @@ BlendBounds LocalBlend::bounds(const Box3& box, Wanted wanted, const Stretch* st
   if (!is_finite(box.center()) || !is_finite(box.size())) return blend_bounds(blend_, box, wanted, stretch);
   SumBounds sum(rest_, box, wanted, stretch);
   for_each_sums([&](const SourceSums& s) { sum.add(s); });
+  if (const FarPolynomial* far = last().far_.get()) sum.add(*far);
   return blend_bounds(blend_, sum, {blend_.alpha, {}}, correction_);
 }
 
 std::size_t LocalBlend::near_count() const {
   if (rest_.kernel == KernelFamily::Compact) return 0;
   return rest_.points.size() + rest_.segments.size() + rest_.arcs.size();
+}
+
+bool LocalBlend::is_mostly_near() const {
+  if (rest_.kernel == KernelFamily::Compact) return false;
+  const std::size_t near = point_is_worth * rest_.points.size() + segment_is_worth * rest_.segments.size() +
+                           arc_is_worth * rest_.arcs.size();
+  return near > source_count() + (last().far_ ? polynomial_is_worth : 0);
 }
 
 std::size_t LocalBlend::source_count() const {
@@ -119,7 +190,8 @@ std::size_t LocalBlend::source_count() const {
 }
 
 std::size_t LocalBlend::bytes() const {
-  return sizeof *this + points_.bytes() + curves_.bytes() + surfaces_.bytes() + rest_.size() * sizeof(ArcSkeleton);
+  return sizeof *this + points_.bytes() + curves_.bytes() + surfaces_.bytes() + rest_.size() * sizeof(ArcSkeleton) +
+         (far_ ? far_->bytes() : 0);
 }
 
 }  // namespace marrow

@@ -142,6 +142,15 @@ void SourceSums::add(const Source& s) {
   largest_radius_ = std::max(largest_radius_, s.radius);
 }
 
+Source SourceSums::operator[](std::size_t i) const {
+  const Group& g = groups_[i / lanes];
+  const std::size_t lane = i % lanes;
+  return {.at = {g.x[lane], g.y[lane], g.z[lane]},
+          .weight = g.weight[lane],
+          .radius = g.radius[lane],
+          .lift_squared = g.lift_squared[lane]};
+}
+
 SkeletonSample SourceSums::value_at(const Vec3d& p) const {
   Totals t;
   folds().values(groups_, exponent_, p, t);

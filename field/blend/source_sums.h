@@ -30,10 +30,14 @@ class SourceSums {
   /// Precondition: exponent >= 2.
   explicit SourceSums(int exponent) : exponent_(exponent) {}
 
+  /// Makes room for so many in all.
+  void reserve(std::size_t count) { groups_.reserve((count + lanes - 1) / lanes); }
   void add(const Source&);
   int exponent() const { return exponent_; }
   std::size_t count() const { return count_; }
   bool empty() const { return count_ == 0; }
+  /// The i-th that was added.
+  Source operator[](std::size_t i) const;
   double largest_radius() const { return largest_radius_; }
   std::size_t bytes() const { return groups_.capacity() * sizeof(Group); }
 

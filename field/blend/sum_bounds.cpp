@@ -111,6 +111,22 @@ void SumBounds::add(const SourceSums& sources) {
   S_error_ += sample_error * (m * f * sources.largest_radius() / s.nearest);
 }
 
+void SumBounds::add(const FarPolynomial& far) {
+  const SkeletonSample s = far.at(center_);
+  const FarPolynomial::Bounds& b = far.bounds();
+  log_slope_ = std::max(log_slope_, b.log_slope);
+  f_ += s.value;
+  low_ += std::max(0.0, s.value * (1 - 1e-10) - b.steepest * rho_);
+  gradient_ += s.gradient;
+  S_ += s.si_gradient;
+  J_ += s.si_jacobian;
+  second_ += b.second;
+  S_second_ += b.S_second;
+  error_ += sample_error * s.value;
+  slope_error_ += sample_error * b.steepest;
+  S_error_ += sample_error * b.S_longest;
+}
+
 void SumBounds::add(const Between& b) {
   const Interval& f = b.f;
   log_slope_ = std::max(log_slope_, b.log_slope);

@@ -7,6 +7,7 @@
 
 #include "field/blend/blend_field.h"
 #include "field/blend/distance_slopes.h"
+#include "field/blend/far_polynomial.h"
 #include "field/blend/source_sums.h"
 #include "field/math/box3.h"
 #include "field/number/interval.h"
@@ -61,6 +62,8 @@ class SumBounds {
   void add(const SkeletonSample&, const Smooth&);
   /// Sources: the same from one remainder for all of them.
   void add(const SourceSums&);
+  /// The box lies in its ball.
+  void add(const FarPolynomial&);
 
   /// What is known of one primitive in the ball of `rho` around the middle.
   struct Part {

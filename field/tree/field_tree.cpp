@@ -281,9 +281,9 @@ FieldTree localized(const FieldTree& tree, const Box3& box, std::uint32_t below)
   return restriction(tree, box, below, true);
 }
 
-bool has_near_skeletons(const FieldTree& tree) {
+bool is_mostly_near(const FieldTree& tree) {
   return std::any_of(tree.records().begin(), tree.records().end(),
-                     [](const FieldTree::Record& r) { return r.local && r.local->near_count() > 0; });
+                     [](const FieldTree::Record& r) { return r.local && r.local->is_mostly_near(); });
 }
 
 std::size_t bytes_of(const FieldTree& tree) {

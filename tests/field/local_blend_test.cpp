@@ -79,6 +79,62 @@ TEST(LocalBlend, IsTheBlendToWithinItsCertifiedError) {
   EXPECT_LT(worst, 1e-10);
 }
 
+// Strands in hundreds: what is far from small boxes is no longer summed.
+TEST(LocalBlend, ManyPrimitivesBecomePolynomials) {
+  Random random(20261105);
+  double worst = 0, most_sources = 0;
+  int polynomials = 0;
+  for (int round = 0; round < 12; ++round) {
+    SCOPED_TRACE("blend " + std::to_string(round));
+    BlendField blend;
+    blend.degree = random.whole(3, 8);
+    if (round % 3 == 0) blend.kernel = KernelFamily::Cauchy;
+    blend.alpha = random.between(0, 1.5);
+    for (int strand = 0; strand < 120; ++strand) {
+      Vec3d at = random.vector(2);
+      for (int i = 0; i < 8; ++i) {
+        const Vec3d next = at + random.vector(0.2);
+        const double radius = random.between(0.02, 0.06);
+        if (i == 7) blend.points.add({at, radius}, {});
+        else blend.segments.add({at, next, radius, i % 2 == 0 ? radius : 0.5 * radius}, {});
+        at = next;
+      }
+    }
+    Vec3d center = random.vector(1.5);
+    std::shared_ptr<const LocalBlend> local;
+    for (double half = 2; half > 0.02; half *= 0.5) {
+      const Box3 box = Box3{center, center}.padded(half);
+      local = LocalBlend::make(blend, local, box);
+      polynomials += local && local->has_polynomial();
+      for (int i = 0; local && i < 20; ++i) {
+        const Vec3d p = point_in(box, random);
+        const BlendSample exact = evaluate(blend, p);
+        if (!(exact.corrected < 1e3)) continue;
+        const LocalBlend::Sample sample = local->evaluate(p);
+        worst = std::max(worst, std::fabs(sample.value - exact.corrected) / (1 + exact.corrected));
+        EXPECT_LE(std::fabs(sample.value - exact.corrected), local->f_error() + local->S_error() + 1e-10);
+        EXPECT_NEAR(sample.value, local->value(p), 1e-12 * (1 + exact.corrected));
+        EXPECT_LE(length(sample.gradient - exact.corrected_gradient), 1e-5 * (1 + length(exact.corrected_gradient)));
+        const BlendBounds around = local->bounds(Box3{p, p}.padded(0.001 * half));
+        EXPECT_LE(around.value.lo, sample.value);
+        EXPECT_GE(around.value.hi, sample.value);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          EXPECT_LE(around.gradient[axis].lo, sample.gradient[axis]);
+          EXPECT_GE(around.gradient[axis].hi, sample.gradient[axis]);
+        }
+      }
+      center = point_in(box.padded(-half / 2), random);
+    }
+    EXPECT_TRUE(local->has_polynomial());
+    most_sources = std::max(most_sources, static_cast<double>(local->source_count()));
+  }
+  std::cout << "  " << polynomials << " polynomials, off by at most " << worst << ", then at most " << most_sources
+            << " sources\n";
+  EXPECT_GT(polynomials, 30);
+  EXPECT_LT(worst, 1e-7);
+  EXPECT_LT(most_sources, 1500);
+}
+
 // The elbows of pipes: rules hold however small the circle and short the arc.
 TEST(LocalBlend, ArcsOfSmallCirclesBecomeFewSources) {
   Random random(20260305);
