@@ -58,6 +58,7 @@ FieldTree::FieldTree(std::shared_ptr<const std::vector<TreeNode>> nodes, std::ve
     : nodes_(std::move(nodes)), records_(std::move(records)), children_(std::move(children)) {
   std::vector<Box3> boxes;
   for (Record& r : records_) {
+    if (r.child_count == 0 && !r.support.empty()) continue;  // of a leaf of another tree: blends are long to go through
     boxes.clear();
     for (const std::uint32_t c : this->children(r)) boxes.push_back(records_[c].support);
     r.support = reach_of(node(r), boxes, 0);
