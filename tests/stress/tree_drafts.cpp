@@ -228,6 +228,40 @@ void crowd(BodyDraft& d, Random& random) {
   }
 }
 
+// Strands of many skeletons: far ones become polynomials in parts of space.
+BlendField strands(Random& random) {
+  BlendField blend;
+  blend.degree = random.whole(3, 7);
+  if (maybe(random, 0.3)) blend.kernel = KernelFamily::Cauchy;
+  blend.alpha = random.between(0, 1.5);
+  const double thickness = power_of_ten(random, -2.3, -1);
+  for (int strand = random.whole(12, 40); strand > 0; --strand) {
+    Vec3d at = random.vector(1), way = random.vector(0.15);
+    for (int i = 0; i < 8; ++i) {
+      const Vec3d next = at + way;
+      const double from = thickness * random.between(0.5, 1.5), to = maybe(random) ? from : 0.5 * from;
+      if (maybe(random, 0.1)) blend.points.add({at, 2 * from}, {});
+      blend.segments.add({at, next, from, to}, {});
+      way += random.vector(0.08);
+      at = next;
+    }
+  }
+  return blend;
+}
+
+// Cut, warped, beside another one or by itself.
+void hundreds(BodyDraft& d, Random& random) {
+  BlendField blend = strands(random);
+  d.focus_size = 4 * blend.segments.skeletons[0].radius_from;
+  for (std::size_t i = 0; i < blend.segments.size(); i += 5) d.places.push_back(blend.segments.skeletons[i].to);
+  std::uint32_t one = d.leaf(BlendLeaf{std::make_shared<const BlendField>(std::move(blend))});
+  if (maybe(random, 0.6)) one = d.combined({one, some_body(d, random)});
+  if (maybe(random, 0.3)) one = d.one_of<Bend, Taper, Twist, Shear>({one});
+  if (maybe(random, 0.2))
+    one = d.combined({one, d.leaf(BlendLeaf{std::make_shared<const BlendField>(strands(random))})});
+  d.bodies = {one};
+}
+
 using Draw = void (*)(BodyDraft&, Random&);
 constexpr std::array<Draw, usual_tree_kinds> draws{any_nodes, creases, warps,        threads,
                                                    supports,  kernels, convolutions, crowd};
@@ -237,6 +271,7 @@ constexpr std::array<Draw, usual_tree_kinds> draws{any_nodes, creases, warps,   
 TreeDraft draft_tree(std::size_t kind, const Affine& place, Random& random) {
   BodyDraft draft(random);
   if (kind < usual_tree_kinds) draws[kind](draft, random);
+  else if (kind == hundreds_kind) hundreds(draft, random);
   else draw_odd_bodies(kind - usual_tree_kinds, draft, random);
   return draft.finished(place);
 }

@@ -28,8 +28,7 @@ Placement random_placement_of_scene(Random& random) {
 
 }  // namespace
 
-TreeScene::TreeScene(std::uint64_t number)
-    : kind_(number < first_odd_tree ? number % usual_tree_kinds : usual_tree_kinds + number % odd_tree_kinds) {
+TreeScene::TreeScene(std::uint64_t number) : kind_(tree_kind_of(number)) {
   Random random(number, Random::Silent{});
   const Placement placement = random_placement_of_scene(random);
   TreeDraft draft = draft_tree(kind_, placement.map, random);
