@@ -128,8 +128,10 @@ FarExpansion::FarExpansion(const Box3& box, bool lifted, double error, double sh
 std::optional<FarExpansion::View> FarExpansion::seen(const Source& s, int exponent) const {
   const Vec3d away = s.at - center_;
   const double squared = dot(away, away) + s.lift_squared;
-  if (!(squared * (largest_ratio * largest_ratio) > rho_ * rho_)) return {};
-  const double distance = std::sqrt(squared), field = s.weight / integer_power(distance, exponent);
+  if (!(rho_ > 0 && squared * (largest_ratio * largest_ratio) > rho_ * rho_)) return {};
+  const double distance = std::sqrt(squared), inverse = 1 / squared;
+  double field = exponent % 2 == 0 ? s.weight : s.weight / distance;  // power by power, so that none overflows
+  for (int i = 0; i < exponent / 2; ++i) field *= inverse;
   const auto step = std::min(static_cast<std::size_t>(rho_ / distance * (steps / largest_ratio)), steps - 1);
   const OfExponent& of = of_exponent(exponent);
   if (!(of.S[step] * field <= error_ * std::max(std::min(1.0, field), share_))) return {};
