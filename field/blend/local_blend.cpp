@@ -36,6 +36,9 @@ void keep_reaching(const PrimitiveList<Skeleton>& from, double support, const Bo
     if (distance_to(s, center) <= rho + support * largest_radius(s)) to.skeletons.push_back(s);
 }
 
+// A polynomial is moved for so many: for 60 or 300 pictures take as long, but cells 1.5 or 1.1 GB of a cut neuron, and
+// for 800 a third longer where many rays meet a cell.
+constexpr std::size_t moving_it_is_worth = 200;
 // How many sources take the time of a polynomial, and of closed forms.
 constexpr std::size_t polynomial_is_worth = 400, point_is_worth = 20, segment_is_worth = 100, arc_is_worth = 20000;
 // Sources are gone through again where so many of them are far: lists of boxes in boxes shrink by it each time.
@@ -127,7 +130,7 @@ void LocalBlend::fold_far_sources(const Box3& box) {
     }
   });
   if (static_cast<double>(far) < enough_far * static_cast<double>(all) ||
-      (outer_far == nullptr && far < polynomial_is_worth))
+      far < (outer_far == nullptr ? polynomial_is_worth : moving_it_is_worth))
     return;
   for (Near& n : near) n.list.reserve(n.count);
   auto view = views.begin();
