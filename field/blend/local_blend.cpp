@@ -1,6 +1,6 @@
 #include "field/blend/local_blend.h"
 
-#include <array>
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -53,9 +53,7 @@ LocalBlend::LocalBlend(const BlendField& blend, std::shared_ptr<const LocalBlend
       outer_(std::move(outer)),
       correction_(correction_of(blend)),
       rest_(without_primitives(blend)),
-      points_(kernel_degree(blend.degree, 0)),
-      curves_(kernel_degree(blend.degree, 1)),
-      surfaces_(kernel_degree(blend.degree, 2)) {
+      sources_(blend.degree) {
   if (!outer_) return;
   f_error_ = outer_->f_error_;
   S_error_ = outer_->S_error_;
@@ -85,9 +83,7 @@ std::shared_ptr<const LocalBlend> LocalBlend::make(const BlendField& blend, std:
     rest.segments = std::move(maker.rest_segments);
     rest.triangles = std::move(maker.rest_triangles);
     rest.arcs = std::move(maker.rest_arcs);
-    made->points_ = std::move(maker.points);
-    made->curves_ = std::move(maker.curves);
-    made->surfaces_ = std::move(maker.surfaces);
+    made->sources_ = std::move(maker.sources);
     made->f_error_ += maker.f_error;
     made->S_error_ += maker.S_error;
     made->fold_far_sources(box);
@@ -96,8 +92,7 @@ std::shared_ptr<const LocalBlend> LocalBlend::make(const BlendField& blend, std:
   rest.distance_triangles = from.distance_triangles;
   rest.distance_arcs = from.distance_arcs;
   rest.cani_hornus_segments = from.cani_hornus_segments;
-  const bool has_sources = !made->points_.empty() || !made->curves_.empty() || !made->surfaces_.empty();
-  return has_sources || made->far_ || rest.size() < from.size() ? made : outer;
+  return !made->sources_.empty() || made->far_ || rest.size() < from.size() ? made : outer;
 }
 
 const LocalBlend& LocalBlend::last() const {
@@ -108,42 +103,30 @@ const LocalBlend& LocalBlend::last() const {
 
 // All sources of the boxes around it anew: into a polynomial, or a list of its own.
 void LocalBlend::fold_far_sources(const Box3& box) {
-  const std::size_t all = source_count();
   const FarPolynomial* const outer_far = last().far_.get();
   const double share = 1 / (sources_of_primitive * static_cast<double>(blend_.size()));
   FarExpansion expansion(box, blend_.kernel == KernelFamily::Cauchy, largest_error, share);
   std::vector<std::optional<FarExpansion::View>> views;
-  std::size_t far = 0;
-  struct Near {
-    SourceSums list;
-    std::size_t count = 0;
-  };
-  std::array<Near, 3> near{
-      {{SourceSums(points_.exponent())}, {SourceSums(curves_.exponent())}, {SourceSums(surfaces_.exponent())}}};
-  const auto near_of = [&](const SourceSums& sums) -> Near& {
-    return near[static_cast<std::size_t>(sums.exponent() - points_.exponent())];
-  };
   for_each_sums([&](const SourceSums& sums) {
-    for (std::size_t i = 0; i < sums.count(); ++i) {
-      views.push_back(expansion.seen(sums[i], sums.exponent()));
-      ++(views.back() ? far : near_of(sums).count);
-    }
+    for (std::size_t i = 0; i < sums.count(); ++i) views.push_back(expansion.seen(sums[i], sums.exponent()));
   });
-  if (static_cast<double>(far) < enough_far * static_cast<double>(all) ||
+  const auto is_far = [](const auto& view) { return view.has_value(); };
+  const auto far = static_cast<std::size_t>(std::count_if(views.begin(), views.end(), is_far));
+  if (static_cast<double>(far) < enough_far * static_cast<double>(views.size()) ||
       far < (outer_far == nullptr ? polynomial_is_worth : moving_it_is_worth))
     return;
-  for (Near& n : near) n.list.reserve(n.count);
+  SourceLists rest(blend_.degree);
   auto view = views.begin();
   for_each_sums([&](const SourceSums& sums) {
-    SourceSums& list = near_of(sums).list;
+    SourceSums& list = rest.with(sums.exponent());
+    const auto end = view + static_cast<std::ptrdiff_t>(sums.count());
+    list.reserve(list.count() + sums.count() - static_cast<std::size_t>(std::count_if(view, end, is_far)));
     for (std::size_t i = 0; i < sums.count(); ++i, ++view)
       if (*view) expansion.add(sums[i], sums.exponent(), **view);
       else list.add(sums[i]);
   });
   far_ = expansion.polynomial(outer_far);
-  points_ = std::move(near[0].list);
-  curves_ = std::move(near[1].list);
-  surfaces_ = std::move(near[2].list);
+  sources_ = std::move(rest);
   f_error_ += expansion.f_error();
   S_error_ += expansion.S_error();
   outer_ = nullptr;
@@ -193,8 +176,7 @@ std::size_t LocalBlend::source_count() const {
 }
 
 std::size_t LocalBlend::bytes() const {
-  return sizeof *this + points_.bytes() + curves_.bytes() + surfaces_.bytes() + rest_.size() * sizeof(ArcSkeleton) +
-         (far_ ? far_->bytes() : 0);
+  return sizeof *this + sources_.bytes() + rest_.size() * sizeof(ArcSkeleton) + (far_ ? far_->bytes() : 0);
 }
 
 }  // namespace marrow

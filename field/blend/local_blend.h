@@ -60,7 +60,7 @@ class LocalBlend {
   template <class Visit>
   void for_each_sums(const Visit& visit) const {
     for (const LocalBlend* here = this; here != nullptr; here = here->outer_.get())
-      for (const SourceSums* sums : {&here->points_, &here->curves_, &here->surfaces_})
+      for (const SourceSums* sums : here->sources_.all())
         if (!sums->empty()) visit(*sums);
   }
 
@@ -68,7 +68,7 @@ class LocalBlend {
   std::shared_ptr<const LocalBlend> outer_;  ///< null: it holds all there is
   Correction correction_;
   BlendField rest_;
-  SourceSums points_, curves_, surfaces_;
+  SourceLists sources_;
   std::unique_ptr<const FarPolynomial> far_;
   double f_error_ = 0, S_error_ = 0;  ///< of all sources, those of outer boxes included
 };

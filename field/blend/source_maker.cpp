@@ -54,9 +54,7 @@ double least_distance(const auto& s, const Vec3d& p) { return distance_to(s, p);
 }  // namespace
 
 SourceMaker::SourceMaker(const BlendField& blend, const Box3& box, double error, double share)
-    : points(kernel_degree(blend.degree, 0)),
-      curves(kernel_degree(blend.degree, 1)),
-      surfaces(kernel_degree(blend.degree, 2)),
+    : sources(blend.degree),
       degree_(blend.degree),
       center_(box.center()),
       rho_(0.5 * length(box.size())),
@@ -101,7 +99,7 @@ void SourceMaker::emit(SourceSums& out, const Vec3d& at, double weight, double r
 
 void SourceMaker::add(const PointSkeleton& s) {
   if (seen(distance_to(s, center_), s.radius).too_near) rest_points.skeletons.push_back(s);
-  else emit(points, s.at, 1, s.radius, 0);
+  else emit(sources.points, s.at, 1, s.radius, 0);
 }
 
 // place(t) for t from 0 to 1.
@@ -109,7 +107,7 @@ template <class Curve, class Place>
 bool SourceMaker::add_curve(const Curve& s, double half_angle, double distance, const Place& place) {
   const double size = measure(s), radius = largest_radius(s), half = 0.5 * (radius - least_radius(s));
   const double mass = unit_[1] * size;
-  const int m = curves.exponent();
+  const int m = sources.curves.exponent();
   const double relative = allowed(mass, radius, distance, m);
   const auto nodes = rule_nodes({.half_length = 0.5 * size,
                                  .half_angle = half_angle,
@@ -123,7 +121,7 @@ bool SourceMaker::add_curve(const Curve& s, double half_angle, double distance, 
   const Nodes rule = rule_of(*nodes);
   for (std::size_t k = 0; k < rule.positions.size(); ++k) {
     const double t = rule.positions[k];
-    emit(curves, place(t), size * rule.weights[k], s.radius_from + (s.radius_to - s.radius_from) * t, 1);
+    emit(sources.curves, place(t), size * rule.weights[k], s.radius_from + (s.radius_to - s.radius_from) * t, 1);
   }
   note(mass, radius, distance, m, relative);
   return true;
@@ -143,7 +141,7 @@ bool SourceMaker::add_part(const ArcSkeleton& s, double distance) {
 bool SourceMaker::add_part(const TriangleSkeleton& s, double distance) {
   const auto& [a, b, c] = s.vertices;
   const double radius = largest_radius(s), half = 0.5 * (radius - least_radius(s)), mass = unit_[2] * measure(s);
-  const int m = surfaces.exponent();
+  const int m = sources.surfaces.exponent();
   const double relative = allowed(mass, radius, distance, m);
   RulePiece line{.half_length = 0.5 * length(c - b),
                  .half_lift = per_lift_ * half,
@@ -160,7 +158,7 @@ bool SourceMaker::add_part(const TriangleSkeleton& s, double distance) {
   for (std::size_t i = 0; i < us.positions.size(); ++i)
     for (std::size_t k = 0; k < vs.positions.size(); ++k) {
       const double u = us.positions[i], uv = u * vs.positions[k];
-      emit(surfaces, a + (b - a) * u + (c - b) * uv, 2 * measure(s) * u * us.weights[i] * vs.weights[k],
+      emit(sources.surfaces, a + (b - a) * u + (c - b) * uv, 2 * measure(s) * u * us.weights[i] * vs.weights[k],
            s.radii[0] + (s.radii[1] - s.radii[0]) * u + (s.radii[2] - s.radii[1]) * uv, 2);
     }
   note(mass, radius, distance, m, relative);

@@ -19,7 +19,7 @@ class SourceMaker {
   void add(const ArcSkeleton&);
   void add(const TriangleSkeleton&);
 
-  SourceSums points, curves, surfaces;
+  SourceLists sources;
   double f_error = 0, S_error = 0;
   PrimitiveList<PointSkeleton> rest_points;
   PrimitiveList<SegmentSkeleton> rest_segments;

@@ -1,10 +1,12 @@
 // Sums over weighted points, which is what integrals over skeletons become at a distance from them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <vector>
 
+#include "field/kernel/inverse_family.h"
 #include "field/skeleton/skeleton_sample.h"
 
 namespace marrow {
@@ -58,6 +60,22 @@ class SourceSums {
   std::size_t count_ = 0;
   double largest_radius_ = 0;
   std::vector<Group> groups_;
+};
+
+/// Sources of points, curves and surfaces, which differ in their exponents.
+struct SourceLists {
+  /// Of a blend of this degree.
+  explicit SourceLists(int degree)
+      : points(kernel_degree(degree, 0)), curves(kernel_degree(degree, 1)), surfaces(kernel_degree(degree, 2)) {}
+
+  SourceSums points, curves, surfaces;
+
+  SourceSums& with(int exponent) {
+    return exponent == points.exponent() ? points : exponent == curves.exponent() ? curves : surfaces;
+  }
+  std::array<const SourceSums*, 3> all() const { return {&points, &curves, &surfaces}; }
+  bool empty() const { return points.empty() && curves.empty() && surfaces.empty(); }
+  std::size_t bytes() const { return points.bytes() + curves.bytes() + surfaces.bytes(); }
 };
 
 }  // namespace marrow
