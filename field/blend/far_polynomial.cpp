@@ -115,8 +115,21 @@ const Folds& folds() {
   return best;
 }
 
+// visit(block, lane, place among the monomials) for each coefficient of f; that of h stands four lanes on.
+template <class Visit>
+void for_each_coefficient(const Visit& visit) {
+  std::size_t block = 0;
+  for (int sum = 0; sum <= degree; ++sum)
+    for (int four = 0; four < fours_of(sum); ++four)
+      for (int k = degree - sum; k >= 0; --k, ++block)
+        for (int i = 4 * four; i <= std::min(sum, 4 * four + 3); ++i)
+          visit(block, i - 4 * four, monomial_index(i, sum - i, k));
+}
+
 double of_f(const Lanes& v) { return ((v[0] + v[1]) + v[2]) + v[3]; }
 double of_h(const Lanes& v) { return ((v[4] + v[5]) + v[6]) + v[7]; }
+Vec3d of_f(const Lanes (&v)[3]) { return {of_f(v[0]), of_f(v[1]), of_f(v[2])}; }
+Vec3d of_h(const Lanes (&v)[3]) { return {of_h(v[0]), of_h(v[1]), of_h(v[2])}; }
 
 }  // namespace
 
@@ -135,17 +148,10 @@ FarPolynomial::FarPolynomial(const Vec3d& center, double radius, const Coefficie
                              const Bounds& bounds)
     : center_(center), radius_(radius), bounds_(bounds) {
   blocks_.resize(block_count);
-  Block* block = blocks_.data();
-  for (int sum = 0; sum <= degree; ++sum)
-    for (int four = 0; four < fours_of(sum); ++four)
-      for (int k = degree - sum; k >= 0; --k, ++block)
-        for (int lane = 0; lane < 4; ++lane) {
-          const int i = 4 * four + lane;
-          const bool there = i <= sum;
-          const std::size_t at = there ? monomial_index(i, sum - i, k) : 0;
-          block->c[lane] = there ? f[at] : 0;
-          block->c[lane + 4] = there ? h[at] : 0;
-        }
+  for_each_coefficient([&](std::size_t block, int lane, std::size_t monomial) {
+    blocks_[block].c[lane] = f[monomial];
+    blocks_[block].c[lane + 4] = h[monomial];
+  });
 }
 
 SkeletonSample FarPolynomial::value_at(const Vec3d& p) const {
@@ -153,7 +159,7 @@ SkeletonSample FarPolynomial::value_at(const Vec3d& p) const {
   folds().values(blocks_, (p - center_) / radius_, t);
   SkeletonSample s;
   s.value = of_f(t.value);
-  s.si_gradient = Vec3d{of_h(t.gradient[0]), of_h(t.gradient[1]), of_h(t.gradient[2])} / radius_;
+  s.si_gradient = of_h(t.gradient) / radius_;
   return s;
 }
 
@@ -162,8 +168,8 @@ SkeletonSample FarPolynomial::at(const Vec3d& p) const {
   folds().slopes(blocks_, (p - center_) / radius_, t);
   SkeletonSample s;
   s.value = of_f(t.value);
-  s.gradient = Vec3d{of_f(t.gradient[0]), of_f(t.gradient[1]), of_f(t.gradient[2])} / radius_;
-  s.si_gradient = Vec3d{of_h(t.gradient[0]), of_h(t.gradient[1]), of_h(t.gradient[2])} / radius_;
+  s.gradient = of_f(t.gradient) / radius_;
+  s.si_gradient = of_h(t.gradient) / radius_;
   const double scale = 1 / (radius_ * radius_);
   const double yz = scale * of_h(t.hessian[3]), xz = scale * of_h(t.hessian[4]), xy = scale * of_h(t.hessian[5]);
   s.si_jacobian.rows = {Vec3d{scale * of_h(t.hessian[0]), xy, xz}, Vec3d{xy, scale * of_h(t.hessian[1]), yz},
@@ -173,15 +179,10 @@ SkeletonSample FarPolynomial::at(const Vec3d& p) const {
 
 void FarPolynomial::add_to(const Vec3d& center, double radius, Coefficients& f, Coefficients& h) const {
   Coefficients own_f{}, own_h{};
-  const Block* block = blocks_.data();
-  for (int sum = 0; sum <= degree; ++sum)
-    for (int four = 0; four < fours_of(sum); ++four)
-      for (int k = degree - sum; k >= 0; --k, ++block)
-        for (int i = 4 * four; i <= std::min(sum, 4 * four + 3); ++i) {
-          const std::size_t at = monomial_index(i, sum - i, k);
-          own_f[at] = block->c[i - 4 * four];
-          own_h[at] = block->c[i - 4 * four + 4];
-        }
+  for_each_coefficient([&](std::size_t block, int lane, std::size_t monomial) {
+    own_f[monomial] = blocks_[block].c[lane];
+    own_h[monomial] = blocks_[block].c[lane + 4];
+  });
   const Vec3d shift = (center - center_) / radius_;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     move_axis<degree>(own_f, degree, axis, shift[axis], radius / radius_);

@@ -10,7 +10,7 @@
 
 namespace marrow {
 
-/// Taylor coefficients about 0 of sum w D^-m, D^2 = |x - r|^2 + l^2. The expansion is the Gegenbauer series,
+/// Taylor coefficients about 0 of sum w D^-m, D^2 = |x - r|^2 + l^2. The expansion is Gegenbauer's [DLMF 18.12.4],
 /// D^-m = sum_k C_k^(m/2)(cos) |x|^k R^-(m+k) with R^2 = |r|^2 + l^2 and cos = x.r / (|x| R). Its terms are
 /// (x.r)^k |x|^(2j) R^-(m+2k+2j) times a constant, so that with y = r / R^2 the moments needed to a degree P are
 ///   sum w R^-m y^(tensor k) R^-(2j)   for k + 2j <= P
