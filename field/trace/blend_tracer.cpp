@@ -7,7 +7,7 @@
 #include "field/trace/blend_tracer_state.h"
 #include "field/trace/cells/cell_walk.h"
 #include "field/trace/cells/ray_in_cube.h"
-#include "field/trace/outside_bound.h"
+#include "field/trace/side_bound.h"
 
 namespace marrow {
 
@@ -41,7 +41,7 @@ std::optional<CellHit> BlendTracer::first_hit(std::size_t tile, const Ray& ray, 
   const Tile& made = state_->tree.tile(tile);
   const auto [enter, exit] = clip_to_tile(made, ray, any);
   log.enter = enter;
-  log.side = CellLog::Side::Unknown;
+  log.side = Side::Unknown;
   if (!(enter < exit)) return {};
   const auto hit = hit_in(made, ray, any, enter, exit, log);
   if (any && hit && is_at_end(*hit, ray.t_max)) return first_hit(tile, ray, false, log);
@@ -57,11 +57,9 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, boo
   return {};
 }
 
-namespace {
-
-// Whether a ray begins inside, by the exact field: asked only when a block is entered inside. Rays of a camera share
-// their beginning. `bounds` hold all tiles, and so all that is inside.
-bool begins_inside(const BlendField& field, const Box3& bounds, std::uint64_t tracer, const Ray& ray) {
+// Whether a ray begins inside: asked only when a block is entered inside. By the exact field where bounds do not tell.
+// Rays of a camera share their beginning.
+bool BlendTracer::begins_inside(const Ray& ray) const {
   struct Place {
     std::uint64_t tracer = 0;
     Vec3d at;
@@ -69,12 +67,12 @@ bool begins_inside(const BlendField& field, const Box3& bounds, std::uint64_t tr
   };
   thread_local Place last;
   const Vec3d at = ray.at(ray.t_min);
-  if (!bounds.contains(at)) return false;
-  if (last.tracer != tracer || !(last.at == at)) last = {tracer, at, corrected_value(field, at) >= 1};
-  return last.inside;
+  if (last.tracer == state_->serial && last.at == at) return last.inside;
+  const Side side = clear_side(at);
+  const bool inside = side == Side::Unknown ? corrected_value(state_->field, at) >= 1 : side == Side::Inside;
+  last = {state_->serial, at, inside};
+  return inside;
 }
-
-}  // namespace
 
 std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray& ray, bool any, double enter,
                                            double exit, CellLog& log) const {
@@ -88,17 +86,17 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
                             .t1 = cube.to_local(exit),
                             .any = any,
                             .from_surface = enter <= ray.t_min,
-                            .from_outside = log.side == CellLog::Side::Outside,
-                            .leaving = log.side == CellLog::Side::Inside,
+                            .from_outside = log.side == Side::Outside,
+                            .leaving = log.side == Side::Inside,
                             .around = ray.around};
   Root root = state_->kernels.first_root(b.view(), cube.local, query);
   // By rounding a place in the block may come before it is entered.
   const auto behind_entry = [&](float t) { return std::max(cube.to_world(t), enter); };
   const auto note = [&] { log.add({behind_entry(root.searched_from), static_cast<std::uint32_t>(root.evaluations)}); };
   note();
-  if (root.begins_outside) log.side = CellLog::Side::Outside;
-  if (root.enters_inside && begins_inside(state_->field, state_->bounds, state_->serial, ray)) {
-    log.side = CellLog::Side::Inside;
+  if (root.begins_outside) log.side = Side::Outside;
+  if (root.enters_inside && begins_inside(ray)) {
+    log.side = Side::Inside;
     query.leaving = true;
     root = state_->kernels.first_root(b.view(), cube.local, query);
     note();
@@ -110,8 +108,10 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
   return CellHit{ends ? ray.t_max : t, &b};
 }
 
-bool BlendTracer::is_clearly_outside(const Vec3d& p) const {
-  return !state_->bounds.contains(p) || OutsideBound(state_->sources, state_->coarse, state_->iso).holds(p);
+// All that is inside lies within the bounds.
+Side BlendTracer::clear_side(const Vec3d& p) const {
+  if (!state_->bounds.contains(p)) return Side::Outside;
+  return SideBound(state_->sources, state_->coarse, state_->iso).side(p);
 }
 
 bool BlendTracer::leaves_surface(const Ray& ray) const {

@@ -20,6 +20,7 @@
 #include "field/math/box3.h"
 #include "field/math/ray.h"
 #include "field/math/ray_packet.h"
+#include "field/math/side.h"
 #include "field/trace/cells/cell_settings.h"
 #include "field/trace/kernels/field_around.h"
 #include "field/trace/ray_visit.h"
@@ -70,8 +71,7 @@ struct CellLog {
   double enter = 0;                                            ///< t at which the ray came into it
   double undecided = std::numeric_limits<double>::infinity();  ///< t of the first gap too short to decide
   std::uint32_t evaluations = 0;                               ///< of all visits
-  enum class Side { Unknown, Outside, Inside };
-  Side side = Side::Unknown;  ///< where the ray was before what it meets next
+  Side side = Side::Unknown;                                   ///< where the ray was before what it meets next
   /// For parts, which pass it on: a ray has been outside before it enters what lies from here on, which saves asking.
   double outside_from = std::numeric_limits<double>::infinity();
   std::vector<RayVisit>* visits = nullptr;  ///< grows by the cells with evaluations, if there is one
@@ -150,9 +150,8 @@ class BlendTracer {
   void surfaces_at(std::span<const SurfaceQuery> hits, std::span<SurfacePoint> found) const;
 
   const BlendField& field() const;
-  /// Whether the corrected field is clearly below 1 (OutsideBound); never wrongly true. For large blends much sooner
-  /// than the field.
-  bool is_clearly_outside(const Vec3d& p) const;
+  /// Where the corrected field is clearly above or below 1 (SideBound). For large blends much sooner than the field.
+  Side clear_side(const Vec3d& p) const;
   /// Whether a ray begins beside a hit of this tracer, outside, as what it knows of the field around tells.
   bool leaves_surface(const Ray&) const;
   TraceStatistics statistics() const;
@@ -160,6 +159,7 @@ class BlendTracer {
  private:
   struct State;
   explicit BlendTracer(std::unique_ptr<State>);
+  bool begins_inside(const Ray&) const;
   std::optional<CellHit> hit_in(const Tile&, const Ray&, bool any, double enter, double exit, CellLog&) const;
   std::optional<CellHit> hit_in(const Tile&, int slot, const Ray&, bool any, double enter, double exit, CellLog&) const;
   struct Stretch;

@@ -90,7 +90,7 @@ void ask_for_cells(std::span<const PartRays> parts) {
 void add_to(CellLog& log, const CellRoots& roots, std::size_t lane) {
   const auto behind_entry = [&](double t) { return std::max(t, roots.enter[lane]); };
   log.add({behind_entry(roots.searched_from[lane]), static_cast<std::uint32_t>(roots.evaluations[lane])});
-  if (roots.begins_outside.has(lane)) log.side = CellLog::Side::Outside;
+  if (roots.begins_outside.has(lane)) log.side = Side::Outside;
   log.undecided = std::min(log.undecided, behind_entry(roots.undecided[lane]));
 }
 
@@ -177,7 +177,7 @@ void BlendTracer::first_hits(std::span<const PartRays> parts, const RayPacket& p
     rays.for_each([&](std::size_t i) {
       group.roots.outside_from[i] = out.log[i].outside_from;
       out.hit[i] = {};
-      out.log[i].side = CellLog::Side::Unknown;
+      out.log[i].side = Side::Unknown;
     });
     group.enter(part, *block, k, rays);
   }
@@ -205,7 +205,7 @@ void BlendTracer::first_hits(std::size_t tile, const RayPacket& packet, const La
     out.hit[i] = {};
     auto [enter, exit] = clip_to_tile(made, ray, any);
     out.log[i].enter = enter;
-    out.log[i].side = CellLog::Side::Unknown;
+    out.log[i].side = Side::Unknown;
     if (!(enter < exit)) return;
     walks[i].start(state_->tree, state_->kernels, made, ray, enter, exit);
     go_on(i);
@@ -236,10 +236,10 @@ LaneSet BlendTracer::hits_in(const CellSteps& steps, const LaneSet& rays, const 
   };
   CellGroup group(*this, packet, any);
   rays.for_each([&](std::size_t i) {
-    if (out.log[i].side == CellLog::Side::Inside || single) return alone(i);
+    if (out.log[i].side == Side::Inside || single) return alone(i);
     group.roots.enter[i] = steps[i].enter;
     group.roots.exit[i] = steps[i].exit;
-    group.roots.outside_from[i] = out.log[i].side == CellLog::Side::Outside ? -infinity : infinity;
+    group.roots.outside_from[i] = out.log[i].side == Side::Outside ? -infinity : infinity;
     together.add(i);
   });
   const auto take = [&](const Block& block, std::size_t, const LaneSet& in_block) {

@@ -63,11 +63,11 @@ std::optional<BlendTracer::Stretch> BlendTracer::stretch_in(const Tile& tile, in
 // Where a ray is in a part, and what is known of it there.
 std::optional<BlendTracer::Stretch> BlendTracer::enter(const TracePart& part, const Ray& ray, bool any,
                                                        CellLog& log) const {
-  log.side = CellLog::Side::Unknown;
+  log.side = Side::Unknown;
   const auto stretch = stretch_in(*part.within, part.slot, ray, any);
   if (!stretch) return {};
   log.enter = stretch->enter;
-  if (stretch->enter >= log.outside_from) log.side = CellLog::Side::Outside;
+  if (stretch->enter >= log.outside_from) log.side = Side::Outside;
   return stretch;
 }
 
@@ -75,8 +75,7 @@ namespace {
 
 // Where the ray begins in this part, it begins outside.
 void pass_on_side(const Ray& ray, double enter, double exit, CellLog& log) {
-  if (log.side == CellLog::Side::Outside)
-    log.outside_from = std::min(log.outside_from, enter <= ray.t_min ? ray.t_min : exit);
+  if (log.side == Side::Outside) log.outside_from = std::min(log.outside_from, enter <= ray.t_min ? ray.t_min : exit);
 }
 
 }  // namespace
@@ -89,7 +88,7 @@ std::optional<CellHit> BlendTracer::first_hit(const TracePart& part, const Ray& 
       part.within->content().is_cell(part.slot)
           ? hit_in(*part.within, part.slot, ray, any, stretch->enter, stretch->exit, log)
           : hit_in(state_->tree.child(*part.within, part.slot), ray, any, stretch->enter, stretch->exit, log);
-  if (log.side == CellLog::Side::Inside) return {};
+  if (log.side == Side::Inside) return {};
   if (any && hit && is_at_end(*hit, ray.t_max)) return first_hit(part, ray, false, log);
   pass_on_side(ray, stretch->enter, stretch->exit, log);
   return hit && hit->t <= ray.t_max ? hit : std::nullopt;

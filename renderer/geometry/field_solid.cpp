@@ -71,8 +71,8 @@ double FieldSolid::value(const Vec3d& p) const {
   return corrected_value(tracer_->field(), in_world_ ? p : local_from_world_.point(p));
 }
 
-bool FieldSolid::is_clearly_outside(const Vec3d& p) const {
-  return tracer_->is_clearly_outside(in_world_ ? p : local_from_world_.point(p));
+Side FieldSolid::clear_side(const Vec3d& p) const {
+  return tracer_->clear_side(in_world_ ? p : local_from_world_.point(p));
 }
 
 bool FieldSolid::is_left_by(const Ray& ray) const {
@@ -100,7 +100,7 @@ void FieldSolid::to_world(const CellLog& log, double stretch, std::size_t visits
   out.enter = log.enter;
   out.undecided = log.undecided;
   out.outside_from = log.outside_from;
-  out.begins_inside = log.side == CellLog::Side::Inside;
+  out.begins_inside = log.side == Side::Inside;
   if (in_world_) return;
   out.enter /= stretch;
   out.undecided /= stretch;

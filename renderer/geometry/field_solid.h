@@ -22,7 +22,7 @@ class FieldSolid final : public Solid {
   Box3 reach() const override;
   FieldSample sample(const Vec3d&) const override;
   double value(const Vec3d&) const override;
-  bool is_clearly_outside(const Vec3d&) const override;
+  Side clear_side(const Vec3d&) const override;
   bool is_left_by(const Ray&) const override;
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
   std::vector<SolidPart> parts() const override;

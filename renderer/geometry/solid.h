@@ -14,6 +14,7 @@
 #include "field/math/box3.h"
 #include "field/math/ray.h"
 #include "field/math/ray_packet.h"
+#include "field/math/side.h"
 #include "field/program/field_program.h"
 #include "field/trace/ray_visit.h"
 #include "renderer/geometry/surfaces.h"
@@ -76,8 +77,8 @@ class Solid {
   virtual FieldSample sample(const Vec3d&) const { return {}; }
   /// sample().value up to rounding, at a part of the cost.
   virtual double value(const Vec3d&) const { return 0; }
-  /// Whether value() is known to be below 0.999, where that is sooner told than the value.
-  virtual bool is_clearly_outside(const Vec3d&) const { return false; }
+  /// Where value() is known to be below 0.999 or above 1.001, where that is sooner told than the value.
+  virtual Side clear_side(const Vec3d&) const { return Side::Unknown; }
   /// Whether a ray leaves the surface of the solid, and so begins outside it.
   virtual bool is_left_by(const Ray&) const { return false; }
   /// t of the first hit in an element, in [ray.t_min, ray.t_max] but not depending on t_max; any hit with `any`.

@@ -25,7 +25,9 @@ bool overlap(const Box3& a, const Box3& b) {
 }
 
 // The field of a solid; 0 where it is clearly outside, which is all that is asked for there.
-double value_or_outside(const Solid& solid, const Vec3d& p) { return solid.is_clearly_outside(p) ? 0 : solid.value(p); }
+double value_or_outside(const Solid& solid, const Vec3d& p) {
+  return solid.clear_side(p) == Side::Outside ? 0 : solid.value(p);
+}
 
 Vec3d outward(const FieldSample& s) {
   const double steepness = length(s.gradient);

@@ -161,7 +161,7 @@ void expect_same(const BlendTracer& tracer, const Rays& rays, LaneSet asked, boo
       log.outside_from = outside_from[i];
       const auto expected = tracer.first_hit(part, rays[i], any, log);
       expect_same(found, i, expected, log);
-      count.entered_inside += log.side == CellLog::Side::Inside;
+      count.entered_inside += log.side == Side::Inside;
       count.hits += expected.has_value();
       outside_from[i] = log.outside_from;
     });

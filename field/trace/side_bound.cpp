@@ -1,0 +1,129 @@
+#include "field/trace/side_bound.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "field/math/elementary.h"
+#include "field/trace/sources/quadrature.h"
+
+namespace marrow {
+namespace {
+
+// What sums are raised by, or lowered. C grows nearly as f does: where both sums are raised by so much and C is still
+// below 1, it was below 1 - clearly, whatever the angle (some 0.992); so it is to the other side.
+constexpr double raised = 1.01;
+constexpr int most_halvings = 4;  // of a piece of which no rule is good enough
+
+}  // namespace
+
+// f and grad_S f as summed, and what they may be off.
+struct SideBound::Sums {
+  double field = 0, field_error = 0, gradient_error = 0;
+  Vec3d gradient;
+
+  // All of a source w with the radius tau, r away: w d^-m, and -m w tau r d^-(m+2).
+  void add(double w, double tau, const Vec3d& r, int m) {
+    const double inverse2 = 1 / length_squared(r);
+    const double f = w * integer_power(m % 2 ? std::sqrt(inverse2) : inverse2, m % 2 ? m : m / 2);
+    field += f;
+    gradient += r * (-m * f * tau * inverse2);
+  }
+};
+
+// As NearFar::counts_as_far(), of a cube that is a point.
+bool SideBound::add_group(const SourceNode& group, const Vec3d& r, Sums& sums) const {
+  const double clear = length(r) - group.radius, m = group.exponent;
+  if (!(clear > 0)) return false;
+  const double bend = m * (m + 1) / integer_power(clear, group.exponent + 2);
+  const double field_error = 0.5 * group.spread * bend;
+  if (field_error > rules_.budget().field) return false;
+  const double gradient_error = bend * (length(group.tau_shift) + 0.5 * (m + 2) * group.tau_spread / clear);
+  if (gradient_error > rules_.budget().gradient) return false;
+  sums.field_error += field_error;
+  sums.gradient_error += gradient_error;
+  sums.add(group.mass, group.tau_mass / group.mass, r, group.exponent);
+  return true;
+}
+
+namespace {
+
+// The half of a piece of a curve that begins at a share of it.
+Piece half_of(const Piece& whole, double begin, int degree) {
+  const auto radius_at = [&](double s) { return whole.radius_from + (whole.radius_to - whole.radius_from) * s; };
+  Piece half = whole;
+  half.from = lerp(whole.from, whole.to, begin);
+  half.to = lerp(whole.from, whole.to, begin + 0.5);
+  half.radius_from = radius_at(begin);
+  half.radius_to = radius_at(begin + 0.5);
+  half.length = 0.5 * whole.length;
+  half.radius = std::max(half.radius_from, half.radius_to);
+  half.mass = 0.5 * whole.mass * integer_power(half.radius / whole.radius, degree - 1);
+  return half;
+}
+
+}  // namespace
+
+// Whether there is a rule that is good enough, for the piece or for its parts.
+bool SideBound::add_piece(const Piece& piece, const Vec3d& p, int halvings, Sums& sums) const {
+  const int n = rules_.degree();
+  if (piece.is_point()) {
+    sums.add(piece.mass, piece.radius, p - piece.from, n - 1);
+    return true;
+  }
+  const NearFar::Rule rule = rules_.rule_for(piece, distance(piece, p), 1);
+  if (!rule.within)
+    return halvings > 0 && add_piece(half_of(piece, 0, n), p, halvings - 1, sums) &&
+           add_piece(half_of(piece, 0.5, n), p, halvings - 1, sums);
+  sums.field_error += rule.error.field;
+  sums.gradient_error += rule.error.gradient;
+  const GaussNodes nodes = gauss_legendre(rule.nodes);
+  for (std::size_t k = 0; k < nodes.positions.size(); ++k) {
+    const double s = nodes.positions[k], tau = piece.radius_from + (piece.radius_to - piece.radius_from) * s;
+    const double w = nodes.weights[k] * piece.mass * integer_power(tau / piece.radius, n - 1);
+    sums.add(w, tau, p - lerp(piece.from, piece.to, s), n);
+  }
+  return true;
+}
+
+// Whether a piece of a leaf has p inside by its own field.
+bool SideBound::is_inside_alone(const SourceNode& leaf, const Vec3d& p) const {
+  for (const Piece& piece : tree_.pieces().subspan(leaf.begin, leaf.end - leaf.begin))
+    if (distance(piece, p) * raised < piece.inside_distance) return true;
+  return false;
+}
+
+Side SideBound::side_by(const Sums& s) const {
+  const double field = s.field, gradient = length(s.gradient);
+  if (iso_.outside(0, raised * (field + s.field_error), raised * (gradient + s.gradient_error))) return Side::Outside;
+  const bool inside =
+      iso_.inside(std::max(0.0, field - s.field_error) / raised, std::max(0.0, gradient - s.gradient_error) / raised);
+  return inside ? Side::Inside : Side::Unknown;
+}
+
+Side SideBound::side(const Vec3d& p) const {
+  // The halves of a node wait while its parts are looked at: one for each level, and 2^31 pieces have fewer.
+  std::array<std::uint32_t, 64> open;
+  Sums sums;
+  for (const SourceRef root : tree_.roots()) {
+    std::size_t count = 0;
+    open[count++] = root.index();
+    while (count > 0) {
+      const std::uint32_t index = open[--count];
+      const SourceNode& node = tree_.node(index);
+      if (add_group(node, p - node.center, sums)) continue;
+      if (node.is_leaf()) {
+        if (is_inside_alone(node, p)) return Side::Inside;
+        for (const Piece& piece : tree_.pieces().subspan(node.begin, node.end - node.begin))
+          if (!add_piece(piece, p, most_halvings, sums)) return Side::Unknown;
+      } else {
+        open[count++] = node.right;
+        open[count++] = index + 1;
+      }
+      if (sums.field - sums.field_error > raised * iso_.critical_field()) return Side::Inside;
+    }
+  }
+  return side_by(sums);
+}
+
+}  // namespace marrow
