@@ -38,6 +38,16 @@ struct Box3 {
   }
 };
 
+/// What is in both.
+inline Box3 common(Box3 a, const Box3& b) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    a.lower[i] = std::max(a.lower[i], b.lower[i]);
+    a.upper[i] = std::min(a.upper[i], b.upper[i]);
+  }
+  return a;
+}
+inline bool do_overlap(const Box3& a, const Box3& b) { return !common(a, b).empty(); }
+
 /// Precondition: the box is not empty.
 inline std::array<Vec3d, 8> corners_of(const Box3& b) {
   std::array<Vec3d, 8> corners;

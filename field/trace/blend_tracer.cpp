@@ -11,16 +11,20 @@
 
 namespace marrow {
 
+std::string BlendTracer::refusal(const BlendField& field) {
+  if (std::string part = untraceable_part(field); !part.empty()) return part;
+  // Without an f from which on all is inside, no distance to a skeleton is certainly inside.
+  if (!(critical_field_of(correction_for(field)) < 100))
+    return "`cavity: false` with so small an `alpha` lets holes open anywhere inside; it can be evaluated (probe, "
+           "slice) but not rendered";
+  return {};
+}
+
 Result<std::unique_ptr<BlendTracer>> BlendTracer::make(BlendField field, const TraceOptions& options) {
-  if (const std::string part = untraceable_part(field); !part.empty()) return failure(part);
+  if (const std::string why = refusal(field); !why.empty()) return failure(why);
   const BlockKernels* kernels = block_kernels(options.instruction_set);
   if (kernels == nullptr)
     return failure("instruction set \"" + options.instruction_set + "\" is unknown or not of this machine");
-  // Without an f from which on all is inside, no distance to a skeleton is certainly inside.
-  if (!(critical_field_of(correction_for(field)) < 100))
-    return failure(
-        "`cavity: false` with so small an `alpha` lets holes open anywhere inside; it can be evaluated (probe, slice) "
-        "but not rendered");
   return std::unique_ptr<BlendTracer>(new BlendTracer(std::make_unique<State>(std::move(field), options, *kernels)));
 }
 
@@ -57,20 +61,19 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, const Ray& ray, boo
   return {};
 }
 
-// Whether a ray begins inside: asked only when a block is entered inside. By the exact field where bounds do not tell.
-// Rays of a camera share their beginning.
-bool BlendTracer::begins_inside(const Ray& ray) const {
+// Whether a ray begins inside there: asked only when a block is entered inside. By the exact field where bounds do not
+// tell. Rays of a camera share their beginning.
+bool BlendTracer::is_inside(const Vec3d& beginning) const {
   struct Place {
     std::uint64_t tracer = 0;
     Vec3d at;
     bool inside = false;
   };
   thread_local Place last;
-  const Vec3d at = ray.at(ray.t_min);
-  if (last.tracer == state_->serial && last.at == at) return last.inside;
-  const Side side = clear_side(at);
-  const bool inside = side == Side::Unknown ? corrected_value(state_->field, at) >= 1 : side == Side::Inside;
-  last = {state_->serial, at, inside};
+  if (last.tracer == state_->serial && last.at == beginning) return last.inside;
+  const Side side = clear_side(beginning);
+  const bool inside = side == Side::Unknown ? corrected_value(state_->field, beginning) >= 1 : side == Side::Inside;
+  last = {state_->serial, beginning, inside};
   return inside;
 }
 
@@ -95,7 +98,7 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
   const auto note = [&] { log.add({behind_entry(root.searched_from), static_cast<std::uint32_t>(root.evaluations)}); };
   note();
   if (root.begins_outside) log.side = Side::Outside;
-  if (root.enters_inside && begins_inside(ray)) {
+  if (root.enters_inside && is_inside(ray.at(ray.t_min))) {
     log.side = Side::Inside;
     query.leaving = true;
     root = state_->kernels.first_root(b.view(), cube.local, query);
@@ -112,6 +115,11 @@ std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray
 Side BlendTracer::clear_side(const Vec3d& p) const {
   if (!state_->bounds.contains(p)) return Side::Outside;
   return SideBound(state_->sources, state_->coarse, state_->iso).side(p);
+}
+
+Side BlendTracer::clear_side(const Box3& box) const {
+  if (!do_overlap(box, state_->bounds)) return Side::Outside;
+  return SideBound(state_->sources, state_->coarse, state_->iso).side(box);
 }
 
 bool BlendTracer::leaves_surface(const Ray& ray) const {

@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -82,6 +83,13 @@ struct CellLog {
   }
 };
 
+/// Which crossings of a ray count.
+struct CrossingFilter {
+  /// Whether all in a cell do, or none, so that it need not be searched; nothing: not all or not known.
+  std::function<std::optional<bool>(const Box3& cell)> counts_in;
+  std::function<bool(double t)> counts_at;
+};
+
 /// Rays of a packet that come to one part.
 struct PartRays {
   TracePart part;
@@ -116,7 +124,9 @@ struct TraceStatistics {
 /// Safe to use from many threads.
 class BlendTracer {
  public:
-  /// Errors: an unknown instruction set, or primitives that cannot be traced (distance segments).
+  /// Why a blend cannot be traced; empty: it can.
+  static std::string refusal(const BlendField&);
+  /// Errors: an unknown instruction set, or a refusal.
   static Result<std::unique_ptr<BlendTracer>> make(BlendField, const TraceOptions&);
   ~BlendTracer();
 
@@ -136,12 +146,18 @@ class BlendTracer {
   /// The first hit of first_hit() in a tile is the nearest one of its parts, to the same bits; except that a ray is not
   /// followed from part to part: when it turns out to begin inside, `log.side` says so, and its tiles have to be asked.
   std::optional<CellHit> first_hit(const TracePart&, const Ray&, bool any, CellLog&) const;
+  /// The whole cell that a part is, whatever of it may hold surface; nothing where it is more than one.
+  static std::optional<Box3> cell_box(const TracePart&);
   /// Whether rays are traced sooner together than one by one.
   bool traces_packets() const;
   /// The same for rays of a packet, each in its part, to the same bits. No ray is in two parts.
   void first_hits(std::span<const PartRays>, const RayPacket&, bool any, CellHits&) const;
   /// first_hit() in a tile, for the rays of a set.
   void first_hits(std::size_t tile, const RayPacket&, const LaneSet& rays, bool any, CellHits&) const;
+  /// The first crossing of the surface in a part, from either side, that counts. Each cell is searched by itself, from
+  /// the side on which the ray comes into it: where that is inside, beside what it has met before. Crossings that
+  /// follow one that does not count by less than the shortest gap (kernels/block_kernels.h) are passed with it.
+  std::optional<CellHit> first_crossing(const TracePart&, const Ray&, const CrossingFilter&, CellLog&) const;
   /// Normal and starting point at a hit in this tile.
   SurfacePoint surface_at(std::size_t tile, const Vec3d& position) const;
   /// The same in the block of a hit.
@@ -149,9 +165,13 @@ class BlendTracer {
   /// Of each of the hits, to the same bits; sooner for many.
   void surfaces_at(std::span<const SurfaceQuery> hits, std::span<SurfacePoint> found) const;
 
+  /// From a hit against its normal: a place where the field is certainly above 1, if one is found nearby.
+  std::optional<Vec3d> inside_beside(const SurfaceQuery& hit, const UnitVec3& normal) const;
+
   const BlendField& field() const;
   /// Where the corrected field is clearly above or below 1 (SideBound). For large blends much sooner than the field.
   Side clear_side(const Vec3d& p) const;
+  Side clear_side(const Box3&) const;
   /// Whether a ray begins beside a hit of this tracer, outside, as what it knows of the field around tells.
   bool leaves_surface(const Ray&) const;
   TraceStatistics statistics() const;
@@ -159,7 +179,9 @@ class BlendTracer {
  private:
   struct State;
   explicit BlendTracer(std::unique_ptr<State>);
-  bool begins_inside(const Ray&) const;
+  bool is_inside(const Vec3d&) const;
+  std::optional<CellHit> crossing_in(const Tile&, int slot, const Ray&, double enter, double exit,
+                                     const CrossingFilter&, CellLog&) const;
   std::optional<CellHit> hit_in(const Tile&, const Ray&, bool any, double enter, double exit, CellLog&) const;
   std::optional<CellHit> hit_in(const Tile&, int slot, const Ray&, bool any, double enter, double exit, CellLog&) const;
   struct Stretch;

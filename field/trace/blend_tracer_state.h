@@ -108,6 +108,11 @@ struct BlendTracer::State {
   }
 };
 
+/// Where a ray is in a tile or a slot, to the bits of hit_in() of tiles.
+struct BlendTracer::Stretch {
+  double enter, exit;
+};
+
 /// Whether any hit, if there is one, may as well lie behind the end of its ray: then the first one tells.
 inline bool is_at_end(const CellHit& any, double t_max) { return any.block != nullptr && any.t == t_max; }
 

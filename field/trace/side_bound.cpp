@@ -14,13 +14,16 @@ namespace {
 // below 1, it was below 1 - clearly, whatever the angle (some 0.992); so it is to the other side.
 constexpr double raised = 1.01;
 constexpr int most_halvings = 4;  // of a piece of which no rule is good enough
+// By how much more than the rules allow groups and pieces may be off, first, which tells the side of most places.
+constexpr double rough = 64, close = 1;
 
 }  // namespace
 
 // f and grad_S f as summed, and what they may be off.
 struct SideBound::Sums {
+  double may_be_off;  // times what the rules allow
   double field = 0, field_error = 0, gradient_error = 0;
-  Vec3d gradient;
+  Vec3d gradient{};
 
   // All of a source w with the radius tau, r away: w d^-m, and -m w tau r d^-(m+2).
   void add(double w, double tau, const Vec3d& r, int m) {
@@ -37,9 +40,9 @@ bool SideBound::add_group(const SourceNode& group, const Vec3d& r, Sums& sums) c
   if (!(clear > 0)) return false;
   const double bend = m * (m + 1) / integer_power(clear, group.exponent + 2);
   const double field_error = 0.5 * group.spread * bend;
-  if (field_error > rules_.budget().field) return false;
+  if (field_error > sums.may_be_off * rules_.budget().field) return false;
   const double gradient_error = bend * (length(group.tau_shift) + 0.5 * (m + 2) * group.tau_spread / clear);
-  if (gradient_error > rules_.budget().gradient) return false;
+  if (gradient_error > sums.may_be_off * rules_.budget().gradient) return false;
   sums.field_error += field_error;
   sums.gradient_error += gradient_error;
   sums.add(group.mass, group.tau_mass / group.mass, r, group.exponent);
@@ -71,7 +74,7 @@ bool SideBound::add_piece(const Piece& piece, const Vec3d& p, int halvings, Sums
     sums.add(piece.mass, piece.radius, p - piece.from, n - 1);
     return true;
   }
-  const NearFar::Rule rule = rules_.rule_for(piece, distance(piece, p), 1);
+  const NearFar::Rule rule = rules_.rule_for(piece, distance(piece, p), sums.may_be_off);
   if (!rule.within)
     return halvings > 0 && add_piece(half_of(piece, 0, n), p, halvings - 1, sums) &&
            add_piece(half_of(piece, 0.5, n), p, halvings - 1, sums);
@@ -102,9 +105,14 @@ Side SideBound::side_by(const Sums& s) const {
 }
 
 Side SideBound::side(const Vec3d& p) const {
+  const Side side = side_by_sums(p, rough);
+  return side == Side::Unknown ? side_by_sums(p, close) : side;
+}
+
+Side SideBound::side_by_sums(const Vec3d& p, double may_be_off) const {
   // The halves of a node wait while its parts are looked at: one for each level, and 2^31 pieces have fewer.
   std::array<std::uint32_t, 64> open;
-  Sums sums;
+  Sums sums{.may_be_off = may_be_off};
   for (const SourceRef root : tree_.roots()) {
     std::size_t count = 0;
     open[count++] = root.index();
@@ -124,6 +132,57 @@ Side SideBound::side(const Vec3d& p) const {
     }
   }
   return side_by(sums);
+}
+
+// Around a box, with what f and |grad_S f| come to in it at most.
+struct SideBound::Ball {
+  Vec3d center;
+  double radius;
+  double field = 0, gradient = 0;
+  bool holds_inside = false;  // all of it is inside by a piece alone
+
+  // Sources w of radii tau, nowhere nearer than that.
+  void add(double w, double w_tau, double nearest, int m) {
+    const double f = integer_power(1 / nearest, m);
+    field += w * f;
+    gradient += m * w_tau * f / nearest;
+  }
+};
+
+// False: nothing more needs to be added.
+bool SideBound::add_leaf(const SourceNode& leaf, Ball& ball) const {
+  for (const Piece& piece : tree_.pieces().subspan(leaf.begin, leaf.end - leaf.begin)) {
+    const double away = distance(piece, ball.center);
+    ball.holds_inside = (away + ball.radius) * raised < piece.inside_distance;
+    if (ball.holds_inside || !(away > ball.radius)) return false;
+    ball.add(piece.mass, piece.mass * piece.radius, away - ball.radius, leaf.exponent);
+  }
+  return true;
+}
+
+Side SideBound::side(const Box3& box) const {
+  constexpr double far = 2;  // times what they reach groups are taken as they are
+  Ball ball{.center = box.center(), .radius = 0.5 * length(box.size())};
+  std::array<std::uint32_t, 64> open;
+  for (const SourceRef root : tree_.roots()) {
+    std::size_t count = 0;
+    open[count++] = root.index();
+    while (count > 0) {
+      const std::uint32_t index = open[--count];
+      const SourceNode& node = tree_.node(index);
+      const double away = length(ball.center - node.center), reach = node.radius + ball.radius;
+      if (away > far * reach) {
+        ball.add(node.mass, node.tau_mass, away - reach, node.exponent);
+      } else if (!node.is_leaf()) {
+        open[count++] = node.right;
+        open[count++] = index + 1;
+      } else if (!add_leaf(node, ball)) {
+        return ball.holds_inside ? Side::Inside : Side::Unknown;
+      }
+      if (ball.field > iso_.critical_field()) return Side::Unknown;
+    }
+  }
+  return iso_.outside(0, raised * ball.field, raised * ball.gradient) ? Side::Outside : Side::Unknown;
 }
 
 }  // namespace marrow

@@ -200,6 +200,30 @@ std::optional<double> BlendTracer::step_by_places(const SurfaceRule& rule, const
   return step ? std::optional(*step * block.half()) : std::nullopt;
 }
 
+// By the sums of the fine level, all places at once; certified as places along the normal are.
+std::optional<Vec3d> BlendTracer::inside_beside(const SurfaceQuery& hit, const UnitVec3& normal) const {
+  const Block& block = *hit.block;
+  const BlockLevel& fine = block.fine();
+  const int degree = state_->field.degree;
+  const Vec3d at = (hit.position - block.center()) / block.half();
+  const UnitVec3 inward = -normal;
+  PlacesInLanes here;
+  for (std::size_t k = 0; k < 3; ++k) here.at[k][0] = static_cast<float>(at[k]);
+  PointFields fields;
+  state_->kernels.point_fields(fine.level, degree, here, 1, fields.data());
+  const PlacesAlong places(at, inward, static_cast<double>(fields[0].nearest));
+  state_->kernels.point_fields(fine.level, degree, places.in_lanes(), places.count(), fields.data());
+  for (std::size_t i = 1; i < static_cast<std::size_t>(places.count()); ++i) {
+    // Errors count twice, and what is rounded.
+    const double f = static_cast<double>(fields[i].f), g = length(vec(fields[i].si_gradient));
+    const double off = 2 * fine.f_error + 4e-6 * f, g_off = 2 * fine.gradient_error + 4e-6 * g;
+    const Vec3d place = hit.position + inward * (length(places[i] - at) * block.half());
+    if (state_->iso.inside(std::max(0.0, f - off), std::max(0.0, g - g_off)) && is_resolved(hit.position, place))
+      return place;
+  }
+  return {};
+}
+
 SurfacePoint BlendTracer::surface_at(std::size_t tile, const Vec3d& position) const {
   const CellTree::Cell cell = state_->tree.nearest_cell(tile, position);
   return surface_at(block(*cell.tile, cell.slot), position);

@@ -11,11 +11,6 @@
 
 namespace marrow {
 
-// Where a ray is in the tile or the slot, to the bits of hit_in() of tiles.
-struct BlendTracer::Stretch {
-  double enter, exit;
-};
-
 namespace {
 
 // Where a line is between the planes of some layers along one axis.

@@ -17,6 +17,7 @@
 #include "field/base/overloaded.h"
 #include "field/math/elementary.h"
 #include "field/program/field_program.h"
+#include "renderer/geometry/boolean_solid.h"
 #include "renderer/geometry/embree_surfaces.h"
 #include "renderer/geometry/field_solid.h"
 #include "renderer/geometry/mesh_solid.h"
@@ -42,11 +43,30 @@ struct Traced {
   std::shared_ptr<RaySpacing> spacing = std::make_shared<RaySpacing>();
 };
 
+// What is made of blends by set operations: tracers of operands, null where only the general one knows them.
+struct Combined {
+  FieldTree whole;
+  Box3 bounds;
+  SetExpression expression;
+  std::vector<std::shared_ptr<Traced>> tracers;
+};
+
 // A field of an object, and for each of its blends the tracer; null where only the general one knows it.
 struct Compiled {
   FieldProgram program;
   std::vector<std::shared_ptr<Traced>> tracers;
+  std::vector<Combined> combined;  // and the rest of its trees
+  std::vector<FieldTree> trees;
 };
+
+// Each is a solid of its own: of more the general tracer takes the rest.
+constexpr std::size_t most_combined = 256;
+
+// Of few skeletons the general tracer sees as much.
+bool is_worth_a_tracer(const BlendField& blend) {
+  constexpr std::size_t few = 32;
+  return blend.size() >= few && BlendTracer::refusal(blend).empty();
+}
 
 // Objects one by one into solids and planes; errors of all of them are gathered.
 class Builder {
@@ -82,7 +102,7 @@ class Builder {
       problems.insert(problems.end(), program.why().begin(), program.why().end());
       return {};
     }
-    Compiled field{std::move(*program), {}};
+    Compiled field{std::move(*program), {}, {}, {}};
     std::map<std::size_t, std::shared_ptr<Traced>> placed;  // by shape
     for (const PlacedBlend& part : field.program.parts()) {
       // The tracer of blends knows the inverse kernel along lines; the general one takes the others.
@@ -92,12 +112,41 @@ class Builder {
       }
       std::shared_ptr<Traced> alone;
       auto& same = part.shared != 0 ? shared_[part.shared] : part.shape != 0 ? placed[part.shape] : alone;
-      if (same == nullptr) same = std::make_shared<Traced>();
-      same->spacing->views.push_back(ray_spacing(scene_, part.local_from_world));
-      same->spacing->samples = options_.samples;
+      place(same, part.local_from_world);
       field.tracers.push_back(same);
     }
+    for (const FieldTree& tree : field.program.trees()) take_apart(tree, field);
     return field;
+  }
+
+  void place(std::shared_ptr<Traced>& same, const Affine& local_from_world) {
+    if (same == nullptr) same = std::make_shared<Traced>();
+    same->spacing->views.push_back(ray_spacing(scene_, local_from_world));
+    same->spacing->samples = options_.samples;
+  }
+
+  // Members that are made of blends by set operations go by themselves.
+  void take_apart(const FieldTree& tree, Compiled& field) {
+    std::map<const BlendField*, std::shared_ptr<Traced>> placed;
+    std::vector<std::uint32_t> rest;
+    const std::vector<Member> all = members(tree);
+    for (const Member& member : all) {
+      auto expression = SetExpression::of(tree, member.record, is_worth_a_tracer);
+      if (!expression || !is_finite(member.bounds.size()) || field.combined.size() >= most_combined) {
+        rest.push_back(member.record);
+        continue;
+      }
+      Combined made{part_of_tree(tree, {{member.record}}, {}), member.bounds, std::move(*expression), {}};
+      for (const SetExpression::Operand& operand : made.expression.operands()) {
+        made.tracers.push_back(nullptr);
+        if (operand.blend == nullptr) continue;
+        place(placed[operand.blend.get()], operand.world_from_blend.inverse());
+        made.tracers.back() = placed[operand.blend.get()];
+      }
+      field.combined.push_back(std::move(made));
+    }
+    if (rest.size() == all.size()) field.trees.push_back(tree);
+    else if (!rest.empty()) field.trees.push_back(part_of_tree(tree, rest, {}));
   }
 
   void add(const Compiled& field, const ObjectDescription& object, ObjectId id) {
@@ -105,28 +154,35 @@ class Builder {
       const PlacedBlend& part = field.program.parts()[i];
       Traced* const same = field.tracers[i].get();
       if (same == nullptr) add(TreeSolid::make(tree_of(part), object.material), object, id);
-      else if (same->solid != nullptr) solids.push_back({same->solid->placed_again(part, object.material), id});
-      else
-        same->solid =
-            add(FieldSolid::make(part, object.material, {.instruction_set = options_.isa, .spacing = same->spacing}),
-                object, id);
+      else add(field_solid(*same, part, object), object, id);
     }
-    for (const FieldTree& tree : field.program.trees()) add(TreeSolid::make(tree, object.material), object, id);
+    for (const Combined& combined : field.combined) add(boolean_solid(combined, object), object, id);
+    for (const FieldTree& tree : field.trees) add(TreeSolid::make(tree, object.material), object, id);
   }
 
-  // Null for what cannot be traced.
+  Result<std::unique_ptr<FieldSolid>> field_solid(Traced& same, const PlacedBlend& part,
+                                                  const ObjectDescription& object) {
+    if (same.solid != nullptr) return same.solid->placed_again(part, object.material);
+    auto made = FieldSolid::make(part, object.material, {.instruction_set = options_.isa, .spacing = same.spacing});
+    if (made) same.solid = made->get();
+    return made;
+  }
+
+  Result<std::unique_ptr<BooleanSolid>> boolean_solid(const Combined& combined, const ObjectDescription& object) {
+    const auto blend_solid = [&](std::size_t i) {
+      const auto& [blend, placed, tree] = combined.expression.operands()[i];
+      return as_operand(field_solid(*combined.tracers[i], {*blend, placed, placed.inverse()}, object));
+    };
+    return BooleanSolid::make(combined.whole, combined.bounds, combined.expression, object.material, blend_solid);
+  }
+
   template <class SolidType>
-  const SolidType* add(Result<std::unique_ptr<SolidType>> solid, const ObjectDescription& object, ObjectId id) {
-    if (solid) {
-      const SolidType* made = solid->get();
-      solids.push_back({std::move(*solid), id});
-      return made;
-    }
+  void add(Result<std::unique_ptr<SolidType>> solid, const ObjectDescription& object, ObjectId id) {
+    if (solid) return void(solids.push_back({std::move(*solid), id}));
     for (Diagnostic d : solid.why()) {
       if (d.where.line == 0) d.where = object.where;
       problems.push_back(std::move(d));
     }
-    return nullptr;
   }
 
  private:
@@ -191,17 +247,23 @@ SurfaceReport report(const Surfaces& surfaces) {
   if (embree == nullptr) return r;
   r.build_seconds = embree->build_seconds;
   std::set<const BlendTracer*> counted;
-  for (const PlacedSolid& p : embree->solids()) {
-    r.primitives += p.solid->primitive_count();
-    const auto* field = dynamic_cast<const FieldSolid*>(p.solid.get());
-    if (field != nullptr && !counted.insert(&field->tracer()).second) continue;
-    r.bytes += p.solid->bytes();
-    if (field == nullptr) continue;
+  const auto add = [&](const Solid& solid) {
+    const auto* field = dynamic_cast<const FieldSolid*>(&solid);
+    if (field != nullptr && !counted.insert(&field->tracer()).second) return;
+    r.bytes += solid.bytes();
+    if (field == nullptr) return;
     const TraceStatistics s = field->statistics();
     r.tiles += s.tiles;
     r.cells += s.cells;
     r.blocks += s.blocks;
     r.largest_error = std::max(r.largest_error, s.largest_error);
+  };
+  for (const PlacedSolid& p : embree->solids()) {
+    r.primitives += p.solid->primitive_count();
+    const auto* boolean = dynamic_cast<const BooleanSolid*>(p.solid.get());
+    if (boolean == nullptr) add(*p.solid);
+    else
+      for (const auto& operand : boolean->operands()) add(*operand);
   }
   return r;
 }

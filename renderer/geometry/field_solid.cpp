@@ -24,6 +24,13 @@ InBlend& in_blend() {
   return *own;
 }
 
+// Around the placed box.
+Box3 placed(const Affine& map, const Box3& box) {
+  Box3 around;
+  for (const Vec3d& p : corners_of(box)) around.include(map.point(p));
+  return around;
+}
+
 std::size_t visits_so_far(const ElementLog& log) { return log.visits == nullptr ? 0 : log.visits->size(); }
 
 }  // namespace
@@ -79,12 +86,7 @@ bool FieldSolid::is_left_by(const Ray& ray) const {
   return ray.around != nullptr && tracer_->leaves_surface(to_local(ray).ray);
 }
 
-Box3 FieldSolid::to_world(const Box3& local) const {
-  if (in_world_) return local;
-  Box3 box;
-  for (const Vec3d& p : corners_of(local)) box.include(world_from_local_.point(p));
-  return box;
-}
+Box3 FieldSolid::to_world(const Box3& local) const { return in_world_ ? local : placed(world_from_local_, local); }
 
 // Its end is raised by more than products and quotients round: the exact one is asked for in the world's t.
 FieldSolid::LocalRay FieldSolid::to_local(const Ray& ray) const {
@@ -133,7 +135,42 @@ std::optional<double> FieldSolid::hit(std::size_t element, const Ray& ray, bool 
 
 std::optional<double> FieldSolid::hit_in_part(const SolidPart& part, const Ray& ray, bool any, ElementLog& log) const {
   if (part.within == nullptr) return hit(part.element, ray, any, log);
-  return traced(TracePart{part.element, static_cast<const Tile*>(part.within), part.slot}, ray, any, log);
+  return traced(traced_part(part), ray, any, log);
+}
+
+std::optional<Box3> FieldSolid::cell_box(const SolidPart& part) const {
+  const auto box = BlendTracer::cell_box(traced_part(part));
+  return box ? std::optional(to_world(*box)) : std::nullopt;
+}
+
+std::optional<double> FieldSolid::crossing(const SolidPart& part, const Ray& ray, const CrossingFilter& filter,
+                                           ElementLog& log) const {
+  const auto [local, stretch] = to_local(ray);
+  CellLog cell;
+  cell.visits = log.visits;
+  const std::size_t before = visits_so_far(log);
+  const auto in_world = [&](double t) { return std::max(ray.t_min, t / stretch); };
+  const CrossingFilter in_blend{[&](const Box3& box) { return filter.counts_in(to_world(box)); },
+                                [&](double t) { return filter.counts_at(in_world(t)); }};
+  const auto found = tracer_->first_crossing(traced_part(part), local, in_blend, cell);
+  to_world(cell, stretch, before, log);
+  log.begins_inside = false;
+  if (!found || in_world(found->t) > ray.t_max) return {};
+  log.place = found->block;
+  return in_world(found->t);
+}
+
+Side FieldSolid::side_of(const Box3& box) const {
+  return tracer_->clear_side(in_world_ ? box : placed(local_from_world_, box));
+}
+
+std::optional<Vec3d> FieldSolid::start_inside(const HitToDescribe& of) const {
+  const Vec3d& position = of.hit->position;
+  const SurfaceQuery hit{static_cast<const Block*>(of.place), in_world_ ? position : local_from_world_.point(position)};
+  const UnitVec3 normal = in_world_ ? of.hit->normal : normalize(world_from_local_.transposed(of.hit->normal));
+  const auto place = tracer_->inside_beside(hit, normal);
+  if (!place || in_world_) return place;
+  return world_from_local_.point(*place);
 }
 
 void FieldSolid::hits_in_parts(std::span<const LanesInPart> parts, const RayPacket& packet, bool any,
@@ -142,7 +179,7 @@ void FieldSolid::hits_in_parts(std::span<const LanesInPart> parts, const RayPack
   b.places.clear();
   const bool in_world = std::ranges::all_of(parts, [](const LanesInPart& p) { return of_family(p.solid).in_world_; });
   for (const auto& [solid, part, lanes] : parts) {
-    b.places.push_back({{part->element, static_cast<const Tile*>(part->within), part->slot}, lanes});
+    b.places.push_back({traced_part(*part), lanes});
     lanes.for_each([&](std::size_t i) {
       b.stretch[i] = 1;
       if (!in_world) {

@@ -6,11 +6,11 @@
 #include "field/math/affine.h"
 #include "field/program/field_program.h"
 #include "field/trace/blend_tracer.h"
-#include "renderer/geometry/solid.h"
+#include "renderer/geometry/operand_solid.h"
 
 namespace marrow {
 
-class FieldSolid final : public Solid {
+class FieldSolid final : public OperandSolid {
  public:
   static Result<std::unique_ptr<FieldSolid>> make(PlacedBlend, MaterialId of_object, const TraceOptions&);
   /// The same blend at another place, or with another material; the tracer is shared.
@@ -31,6 +31,11 @@ class FieldSolid final : public Solid {
   const void* family() const override { return tracer_.get(); }
   void hits_in_parts(std::span<const LanesInPart>, const RayPacket&, bool any, PacketLog&) const override;
   void describe(std::span<const HitToDescribe>) const override;
+  std::optional<double> crossing(const SolidPart&, const Ray&, const CrossingFilter&, ElementLog&) const override;
+  std::optional<Box3> cell_box(const SolidPart&) const override;
+  Side side_of(const Box3&) const override;
+  double field_error() const override { return 1e-5; }  // TraceOptions::tolerance
+  std::optional<Vec3d> start_inside(const HitToDescribe&) const override;
   std::size_t primitive_count() const override { return tracer_->field().size(); }
   std::size_t bytes() const override { return tracer_->statistics().bytes; }
   const BlendTracer& tracer() const { return *tracer_; }
@@ -44,6 +49,9 @@ class FieldSolid final : public Solid {
     Ray ray;
     double stretch;
   };
+  static TracePart traced_part(const SolidPart& part) {
+    return {part.element, static_cast<const Tile*>(part.within), part.slot};
+  }
   static const FieldSolid& of_family(const Solid* member) { return static_cast<const FieldSolid&>(*member); }
   LocalRay to_local(const Ray&) const;
   void to_world(const CellLog&, double stretch, std::size_t visits_before, ElementLog&) const;

@@ -5,13 +5,15 @@
 #include <utility>
 
 #include "field/trace/general/tree_tracer.h"
-#include "renderer/geometry/solid.h"
+#include "renderer/geometry/operand_solid.h"
 
 namespace marrow {
 
-class TreeSolid final : public Solid {
+class TreeSolid final : public OperandSolid {
  public:
-  static Result<std::unique_ptr<TreeSolid>> make(FieldTree, MaterialId of_object);
+  /// As TreeTracer::make().
+  static Result<std::unique_ptr<TreeSolid>> make(FieldTree, MaterialId of_object,
+                                                 const Box3& within = TreeTracer::everywhere);
 
   std::size_t element_count() const override { return tracer_.cell_count(); }
   Box3 element_box(std::size_t element) const override { return tracer_.cell_box(element); }
@@ -21,14 +23,19 @@ class TreeSolid final : public Solid {
   double value(const Vec3d&) const override;
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
   void describe(std::span<const HitToDescribe>) const override;
+  std::optional<double> crossing(const SolidPart&, const Ray&, const CrossingFilter&, ElementLog&) const override;
+  Side side_of(const Box3&) const override;
+  double field_error() const override;
+  std::optional<Vec3d> start_inside(const HitToDescribe&) const override;
   std::size_t primitive_count() const override;
   std::size_t bytes() const override { return tracer_.bytes(); }
 
  private:
-  TreeSolid(TreeTracer tracer, MaterialId of_object) : tracer_(std::move(tracer)), material_(of_object) {}
+  TreeSolid(TreeTracer, MaterialId of_object);
 
   TreeTracer tracer_;
   MaterialId material_;
+  bool holds_blends_;
 };
 
 }  // namespace marrow

@@ -18,12 +18,6 @@ double first_step(const SurfaceHit& hit, const Box3& reach) {
   return std::max(length(hit.outside - hit.position), std::ldexp(largest_coordinate(reach), -48));
 }
 
-bool overlap(const Box3& a, const Box3& b) {
-  for (std::size_t i = 0; i < 3; ++i)
-    if (!(a.lower[i] <= b.upper[i] && b.lower[i] <= a.upper[i])) return false;
-  return true;
-}
-
 // The field of a solid; 0 where it is clearly outside, which is all that is asked for there.
 double value_or_outside(const Solid& solid, const Vec3d& p) {
   return solid.clear_side(p) == Side::Outside ? 0 : solid.value(p);
@@ -210,7 +204,7 @@ bool UnitedSolids::may_part(const Vec3d& a, const Vec3d& b, ObjectId of) const {
   if (extents_.size() > quickly_asked) return true;
   Box3 between{a, a};
   between.include(b);
-  return std::ranges::any_of(extents_, [&](const Extent& e) { return e.object != of && overlap(e.box, between); });
+  return std::ranges::any_of(extents_, [&](const Extent& e) { return e.object != of && do_overlap(e.box, between); });
 }
 
 bool UnitedSolids::is_outside(std::size_t solid, const Vec3d& p) const {

@@ -6,8 +6,10 @@
 
 #include "renderer/geometry/mesh_solid.h"
 #include "renderer/geometry/tree_solid.h"
+#include "tests/geometry/boolean_scene.h"
 #include "tests/geometry/scene_of_solids.h"
 #include "tests/trace/instruction_sets.h"
+#include "tests/tree/random_tree.h"
 
 namespace marrow::test {
 namespace {
@@ -27,8 +29,22 @@ MeshShape shards(Random& random) {
   return mesh;
 }
 
+// The blend without a ball and what is behind a plane, beside another blend.
+FieldTree cut(Random& random, const BlendField& blend) {
+  RandomTree tree(random);
+  const auto leaf = [&](BlendField b) { return tree.leaf(BlendLeaf{std::make_shared<BlendField>(std::move(b))}); };
+  const Affine aside = Affine::translate({0, 3, 0});
+  const std::uint32_t ball = tree.leaf(Sphere{.center = random.vector(0.7), .radius = 0.6, .potential = {}}),
+                      plane = tree.leaf(Plane{.point = {}, .normal = normalize(random.vector(1)), .potential = {}}),
+                      whole = leaf(blend), other = leaf(random_scene(random, {3, 1}, 4));
+  const std::uint32_t both = tree.record(CrispUnion{}, {other, whole});
+  tree.record(AffineWarp{aside, aside.inverse()},
+              {tree.record(Difference{}, {random.between(0, 1) < 0.5 ? whole : both, plane, ball})});
+  return tree.tree();
+}
+
 // Everything that rays can meet: blends in the world's coordinates and in their own, one at several places, a general
-// tree, triangles, planes.
+// tree, blends under set operations, triangles, planes.
 std::unique_ptr<EmbreeSurfaces> everything(Random& random, const BlendField& blend, const TraceOptions& options,
                                            const std::string& config) {
   const Affine bend = Affine::translate(random.vector(1)) *
@@ -42,6 +58,7 @@ std::unique_ptr<EmbreeSurfaces> everything(Random& random, const BlendField& ble
   add(std::move(first));
   add(std::move(*FieldSolid::make(placed(random_scene(random, {3, 1.2}, 3), bend), MaterialId{4}, options)));
   add(std::move(*TreeSolid::make(tree_of(placed(random_scene(random, {4, 0.7}, 2))), MaterialId{5})));
+  add(boolean_solid_of(cut(random, blend), 2, MaterialId{9}, options));
   add(std::make_unique<MeshSolid>(shards(random), MaterialId{6}));
   std::vector<PlacedPlane> planes{{{0, -2, 0}, UnitVec3::unchecked({0, 1, 0}), MaterialId{7}, ObjectId{solids.size()}},
                                   {{3, 0, 0}, normalize(Vec3d{-1, 0.3, 0.2}), MaterialId{8}, ObjectId{7}}};

@@ -262,6 +262,61 @@ void hundreds(BodyDraft& d, Random& random) {
   d.bodies = {one};
 }
 
+// A blend that its own tracer knows, in some place.
+std::uint32_t traced_strands(BodyDraft& d, Random& random) {
+  BlendField blend = strands(random);
+  blend.kernel = KernelFamily::Inverse;
+  d.focus_size = std::min(d.focus_size, 4 * blend.segments.skeletons[0].radius_from);
+  for (std::size_t i = 0; i < blend.segments.size(); i += 5) d.places.push_back(blend.segments.skeletons[i].to);
+  const std::uint32_t leaf = d.leaf(BlendLeaf{std::make_shared<const BlendField>(std::move(blend))});
+  if (maybe(random)) return leaf;
+  const Vec3d sizes = maybe(random) ? Vec3d{1, 1, 1} : Vec3d{random.between(0.5, 1.5), 1, random.between(0.5, 1.5)};
+  return d.placed(Affine::translate(random.vector(0.2)) *
+                      Affine::rotate(normalize(random.vector(1)), random.between(-3, 3)) * Affine::scale(sizes),
+                  leaf);
+}
+
+// What cuts: a plane, a ball, a shell, strands, or any body.
+std::uint32_t cutter(BodyDraft& d, Random& random) {
+  switch (random.whole(0, 5)) {
+    case 0:
+      return d.leaf(
+          Plane{.point = random.vector(0.4), .normal = normalize(random.vector(1)), .potential = potential(random)});
+    case 1:
+      return ball(d, random, random.vector(0.7), random.between(0.1, 0.9));
+    case 2: {
+      const double thickness = power_of_ten(random, -4, -1);
+      return d.of(Difference{}, {ball(d, random, {}, 0.7), ball(d, random, {}, 0.7 - thickness)});
+    }
+    case 3:
+      return traced_strands(d, random);
+    default:
+      return some_body(d, random);
+  }
+}
+
+// Crisp set operations, one on the other, on blends of many skeletons.
+void cuts(BodyDraft& d, Random& random) {
+  std::uint32_t one = traced_strands(d, random);
+  for (int i = random.whole(1, 3); i > 0; --i) {
+    const std::uint32_t other = cutter(d, random);
+    switch (random.whole(0, 4)) {
+      case 0:
+        one = d.of(Intersection{}, {one, other});
+        break;
+      case 1:
+        one = d.of(Difference{}, {other, one});
+        break;
+      case 2:
+        one = d.of(CrispUnion{}, {other, one});
+        break;
+      default:
+        one = d.of(Difference{}, {one, other});
+    }
+  }
+  d.bodies = {one};
+}
+
 using Draw = void (*)(BodyDraft&, Random&);
 constexpr std::array<Draw, usual_tree_kinds> draws{any_nodes, creases, warps,        threads,
                                                    supports,  kernels, convolutions, crowd};
@@ -272,6 +327,7 @@ TreeDraft draft_tree(std::size_t kind, const Affine& place, Random& random) {
   BodyDraft draft(random);
   if (kind < usual_tree_kinds) draws[kind](draft, random);
   else if (kind == hundreds_kind) hundreds(draft, random);
+  else if (kind == cuts_kind) cuts(draft, random);
   else draw_odd_bodies(kind - usual_tree_kinds, draft, random);
   return draft.finished(place);
 }

@@ -15,15 +15,18 @@ namespace marrow::test {
 inline constexpr std::array tree_kind_names{"any nodes", "creases",      "warps",  "threads",    "supports",
                                             "kernels",   "convolutions", "crowd",  "coincident", "cusps",
                                             "squeezed",  "pressed",      "powers", "sheets",     "odd blends",
-                                            "planes",    "shells",       "joined", "hundreds"};
+                                            "planes",    "shells",       "joined", "hundreds",   "cuts"};
 /// Of them, those after the first so many are odd, as nobody would model them, in scenes from this number on; the last
-/// one, of blends of hundreds of skeletons, has scenes of its own, too.
-inline constexpr std::size_t usual_tree_kinds = 8, odd_tree_kinds = tree_kind_names.size() - usual_tree_kinds - 1;
-inline constexpr std::uint64_t first_odd_tree = 2'000'000'000, first_tree_of_hundreds = 3'000'000'000;
+/// two, of blends of hundreds of skeletons, and of set operations on such blends, have scenes of their own, too.
+inline constexpr std::size_t usual_tree_kinds = 8, odd_tree_kinds = tree_kind_names.size() - usual_tree_kinds - 2;
+inline constexpr std::uint64_t first_odd_tree = 2'000'000'000, first_tree_of_hundreds = 3'000'000'000,
+                               first_tree_of_cuts = 4'000'000'000;
 
-inline constexpr std::size_t kernels_kind = 5, cusps_kind = 9, hundreds_kind = tree_kind_names.size() - 1;
+inline constexpr std::size_t kernels_kind = 5, cusps_kind = 9, hundreds_kind = tree_kind_names.size() - 2,
+                             cuts_kind = tree_kind_names.size() - 1;
 
 inline std::size_t tree_kind_of(std::uint64_t scene) {
+  if (scene >= first_tree_of_cuts) return cuts_kind;
   if (scene >= first_tree_of_hundreds) return hundreds_kind;
   return scene < first_odd_tree ? scene % usual_tree_kinds : usual_tree_kinds + scene % odd_tree_kinds;
 }

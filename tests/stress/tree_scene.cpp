@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "renderer/geometry/tree_solid.h"
+#include "tests/geometry/boolean_scene.h"
 #include "tests/trace/random_scene.h"
 
 namespace marrow::test {
@@ -26,6 +27,16 @@ Placement random_placement_of_scene(Random& random) {
   return p;
 }
 
+// Blends under set operations as a scene has them, all else by the general tracer.
+std::unique_ptr<Solid> solid_of(const FieldTree& tree, std::size_t kind) {
+  constexpr std::size_t few = 50;
+  if (kind == cuts_kind)
+    if (auto solid = boolean_solid_of(tree, few, MaterialId{})) return solid;
+  auto solid = TreeSolid::make(tree, MaterialId{});
+  if (!solid) return nullptr;
+  return std::move(*solid);
+}
+
 }  // namespace
 
 TreeScene::TreeScene(std::uint64_t number) : kind_(tree_kind_of(number)) {
@@ -37,15 +48,15 @@ TreeScene::TreeScene(std::uint64_t number) : kind_(tree_kind_of(number)) {
   tree_ = std::move(draft.tree);
   places_ = std::move(draft.places);
   focus_size_ = draft.focus_size * placement.scale;
-  auto solid = TreeSolid::make(tree_, MaterialId{});
-  if (!solid) throw std::runtime_error(name_ + " cannot be traced");
-  for (std::size_t i = 0; i < (*solid)->element_count(); ++i) cells_.include((*solid)->element_box(i));
+  std::unique_ptr<Solid> solid = solid_of(tree_, kind_);
+  if (solid == nullptr) throw std::runtime_error(name_ + " cannot be traced");
+  for (std::size_t i = 0; i < solid->element_count(); ++i) cells_.include(solid->element_box(i));
   // A tree without surface: rays go where it might be.
   if (cells_.empty()) cells_ = Box3{placement.map.translation, placement.map.translation}.padded(placement.scale);
   center_ = cells_.center();
   size_ = 0.5 * length(cells_.size());
   std::vector<PlacedSolid> solids;
-  solids.push_back({std::move(*solid), ObjectId{0}});
+  solids.push_back({std::move(solid), ObjectId{0}});
   auto made = EmbreeSurfaces::make(std::move(solids), {}, "threads=1");
   if (!made) throw std::runtime_error(name_ + " has no surfaces");
   surfaces_ = std::move(*made);

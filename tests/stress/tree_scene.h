@@ -27,6 +27,10 @@ class TreeScene {
   const Box3& cells() const { return cells_; }
   const Vec3d& center() const { return center_; }
   double size() const { return size_; }  ///< half of the extent of the cells
+  /// By what share of the field sums may be off, and what is no error of theirs: of blends that have a tracer of their
+  /// own 1e-5, which is its tolerance.
+  double sum_error() const { return kind_ == cuts_kind ? 1e-6 : 2e-7; }
+  double noticed() const { return kind_ == cuts_kind ? 1e-5 : 1e-6; }
   double value(const Vec3d& p) const { return marrow::value(tree_, p); }
 
   /// The box of an element, or all.

@@ -14,8 +14,6 @@ namespace marrow::test {
 namespace {
 
 constexpr std::size_t most_offenders = 40;
-// Sums in parts of space are off by this share of the field at most.
-constexpr double sum_error = 2e-7;
 
 void note(TreeVerdict& v, const TreeScene& scene, const Ray& ray, const char* family, const char* what, double amount) {
   if (v.offenders.size() >= most_offenders) return;
@@ -58,7 +56,7 @@ double decided_from(const TreeScene& scene, const Ray& ray) {
   const double moved = position_error(scene, ray);
   const auto is_decided = [&](double t) {
     const Slopes at = slopes_at(scene, ray, t);
-    return std::fabs(at.value - 1) > noticed + moved * at.steepness;
+    return std::fabs(at.value - 1) > scene.noticed() + moved * at.steepness;
   };
   if (is_decided(0)) return 0;
   double t = 1e-12 * scene.size();
@@ -69,7 +67,7 @@ double decided_from(const TreeScene& scene, const Ray& ray) {
 // How far the errors of sums, of positions in double and of floats move a hit.
 double slack_of(const TreeScene& scene, const Ray& ray, double t, const Slopes& at) {
   const double off = position_error(scene, ray);
-  const double moved = at.along > 0 ? (sum_error + off * at.steepness) / at.along : 0;
+  const double moved = at.along > 0 ? (scene.sum_error() + off * at.steepness) / at.along : 0;
   return std::min(4 * ulp_of_float(t) + moved + off, 1e-3 * scene.size());
 }
 
@@ -91,7 +89,7 @@ void judge_limits(const TreeScene& scene, const Ray& ray, const SurfaceHit& hit,
   const auto before = scene.surfaces().first_hit(ending(std::nextafter(hit.t, 0)));
   // What is left again within the slack may be found or not.
   const ChangeSearch along(scene.tree(), ray);
-  const bool is_deep = along.is_inside(hit.t + slack) && along.depth(hit.t, hit.t + slack) > noticed;
+  const bool is_deep = along.is_inside(hit.t + slack) && along.depth(hit.t, hit.t + slack) > scene.noticed();
   if (at && at->t == hit.t && !before && (!is_deep || scene.surfaces().occluded(ending(hit.t + slack))) &&
       !scene.surfaces().occluded(ending(hit.t - slack)))
     return;
@@ -99,9 +97,10 @@ void judge_limits(const TreeScene& scene, const Ray& ray, const SurfaceHit& hit,
   note(v, scene, ray, family, "limits not kept at", hit.t);
 }
 
-void judge_ulps(const ChangeSearch& along, const SurfaceHit& hit, const Slopes& slopes, TreeVerdict& v) {
+void judge_ulps(const TreeScene& scene, const ChangeSearch& along, const SurfaceHit& hit, const Slopes& slopes,
+                TreeVerdict& v) {
   const double ulp = ulp_of_float(hit.t);
-  if (sum_error > 4 * ulp * slopes.along) return;
+  if (scene.sum_error() > 4 * ulp * slopes.along) return;
   ++v.conditioned;
   v.within_4_ulp += changes_near(along, hit.t, 4 * ulp);
 }
@@ -113,7 +112,7 @@ void judge_hit(const TreeScene& scene, const Ray& ray, const SurfaceHit& hit, co
   const double slack = slack_of(scene, ray, hit.t, slopes);
   if (!changes_near(along, hit.t, slack)) {
     const double rounded = 16 * rounding::ulp * max_component(abs(hit.position)) * slopes.steepness;
-    const bool is_off = !(std::fabs(slopes.value - 1) < noticed + rounded);
+    const bool is_off = !(std::fabs(slopes.value - 1) < scene.noticed() + rounded);
     ++(is_off ? v.phantom : v.grazing);
     if (is_off) note(v, scene, ray, family, "phantom", slopes.value - 1);
   }
@@ -123,7 +122,7 @@ void judge_hit(const TreeScene& scene, const Ray& ray, const SurfaceHit& hit, co
   }
   if (!from_afar || !(slopes.along > 0.1 * slopes.steepness)) return;
   judge_limits(scene, ray, hit, slack, family, v);
-  judge_ulps(along, hit, slopes, v);
+  judge_ulps(scene, along, hit, slopes, v);
 }
 
 // Nothing worth mentioning may change sides before `end`.
@@ -134,7 +133,7 @@ void judge_way(const TreeScene& scene, const Ray& ray, const Interval& way, std:
   v.unjudged += search.gave_up();
   if (!change) return;
   const double depth = search.depth(*change, way.hi);
-  if (depth < noticed) {
+  if (depth < scene.noticed()) {
     ++v.grazing;
     return;
   }
@@ -199,7 +198,7 @@ void judge_line(const TreeScene& scene, const AimedRay& line, Random& random, co
     const ChangeSearch along(scene.tree(), ray);
     const double slack = slack_of(scene, ray, t, slopes_at(scene, ray, t));
     const double depth = along.is_inside(t + slack) ? along.depth(t + slack, t + 1e-2 * scene.size()) : 0;
-    if (depth < noticed) return;
+    if (depth < scene.noticed()) return;
     ++(empty_handed.certified ? v.odd : v.odd_lost);
     note(v, scene, ray, family, empty_handed.certified ? "odd" : "odd, lost", depth);
   };
@@ -208,7 +207,7 @@ void judge_line(const TreeScene& scene, const AimedRay& line, Random& random, co
   const double first = entry->t, last = reach - exit->t;
   for (int i = 0; i < 3; ++i) {
     const double t = random.between(first, last);
-    if (!(scene.value(there.at(t)) < 1 - noticed)) continue;
+    if (!(scene.value(there.at(t)) < 1 - scene.noticed())) continue;
     const Ray onward{there.at(t), there.direction, 0, reach - t}, backward{there.at(t), -there.direction, 0, t};
     if (!scene.surfaces().first_hit(onward, going)) one_way_only(back, exit->t, going);
     if (!scene.surfaces().first_hit(backward, coming)) one_way_only(there, entry->t, coming);

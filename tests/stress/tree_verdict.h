@@ -12,18 +12,18 @@ namespace marrow::test {
 /// Counts add up.
 struct TreeVerdict {
   std::uint64_t rays = 0, hits = 0;
-  /// A change of side was skipped, the field beyond it differs from 1 by more than noticed, and the answer said that
-  /// nothing was.
+  /// A change of side was skipped, the field beyond it differs from 1 by more than TreeScene::noticed(), and the answer
+  /// said that nothing was.
   std::uint64_t missed = 0;
   /// The same, but the answer said that a gap before it was not decided.
   std::uint64_t lost = 0;
-  /// A hit where the field differs from 1 by more than `noticed`, and does not change sides nearby.
+  /// A hit where the field differs from 1 by more than that, and does not change sides nearby.
   std::uint64_t phantom = 0;
   /// The start of further rays is inside.
   std::uint64_t wrong_side = 0;
   /// A hit that is not the same, or not gone, when the ray ends at it, or just before it; or occluded() differs.
   std::uint64_t limits = 0;
-  /// A change of side was skipped, or a hit is none, but the field stays within `noticed` of 1.
+  /// A change of side was skipped, or a hit is none, but the field stays within it.
   std::uint64_t grazing = 0;
   /// The answer says itself that a gap stayed undecided.
   std::uint64_t uncertified = 0;
@@ -40,9 +40,6 @@ struct TreeVerdict {
 
   void add(const TreeVerdict&);
 };
-
-/// Sums of a part of space are known to 1e-7 of a field; ten times that is no error of theirs.
-inline constexpr double noticed = 1e-6;
 
 /// `from_afar`: the ray begins a camera's distance away, so that ulps of t mean something.
 void judge(const TreeScene&, const AimedRay&, const char* family, bool from_afar, TreeVerdict&);

@@ -81,5 +81,29 @@ TEST(SideBound, IsToldOfMostPlacesAmongMany) {
   expect_most_told(all.inside, 500);
 }
 
+// Of boxes of a tenth to several radii around such places, by places in them.
+TEST(SideBound, TellsAllOfABox) {
+  Random random(303);
+  int outside = 0, inside = 0;
+  for (const int n : {3, 5, 8}) {
+    const Stage stage(random_scene(random, {n, contact_alpha(n)}, 40));
+    const SideBound bound(stage.sources, stage.coarse, stage.iso);
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3d center = i % 3 == 0 ? random_direction(random) * random.between(0, 4) : beside(random, stage.field);
+      const Vec3d half = Vec3d{1, 1, 1} * pow(10, random.between(-3, 0));
+      const Side side = bound.side({center - half, center + half});
+      outside += side == Side::Outside;
+      inside += side == Side::Inside;
+      for (int k = 0; k < 8 && side != Side::Unknown; ++k) {
+        const double value = stage.value(center + random.vector(half.x));
+        EXPECT_TRUE(side == Side::Outside ? value < 1 : value > 1) << value;
+      }
+    }
+  }
+  std::cout << "  " << outside << " outside, " << inside << " inside\n";
+  EXPECT_GT(outside, 1000);
+  EXPECT_GT(inside, 500);
+}
+
 }  // namespace
 }  // namespace marrow::test

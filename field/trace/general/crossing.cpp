@@ -136,7 +136,10 @@ class Search {
 
   void give_up(Piece piece) {
     learn_sides(piece);
-    if (!piece.crosses() || !is_short(piece)) found_.undecided = std::min(found_.undecided, piece.begin);
+    if (!piece.crosses() || !is_short(piece)) {
+      found_.undecided_until = std::max(piece.end, found_.undecided < inf ? found_.undecided_until : piece.end);
+      found_.undecided = std::min(found_.undecided, piece.begin);
+    }
     if (piece.crosses()) found_.t = placed(piece);
   }
 

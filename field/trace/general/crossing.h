@@ -12,7 +12,8 @@ namespace marrow {
 
 struct CrossingSearch {
   std::optional<double> t;                                     ///< of the crossing
-  double undecided = std::numeric_limits<double>::infinity();  ///< where a gap begins that nothing could decide
+  double undecided = std::numeric_limits<double>::infinity();  ///< where the first gap begins that nothing could decide
+  double undecided_until = 0;                                  ///< where the last one ends
   std::uint32_t evaluations = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include <tbb/parallel_for.h>
@@ -53,9 +54,10 @@ Box3 trimmed(const FieldTree& tree, const Member& member) {
 
 }  // namespace
 
-Result<TreeTracer> TreeTracer::make(FieldTree tree) {
+Result<TreeTracer> TreeTracer::make(FieldTree tree, const Box3& within) {
   TreeTracer made(std::move(tree));
-  const std::vector<Member> all = members(made.tree_);
+  std::vector<Member> all = members(made.tree_);
+  for (Member& member : all) member.bounds = common(member.bounds, within);
   if (all.size() > 1 && all.size() <= most_asked) made.members_ = all;
   for (const Member& member : all) {
     if (member.bounds.empty()) continue;
@@ -96,7 +98,10 @@ namespace {
 // Leaves in the order of the ray.
 class CellSearch {
  public:
-  CellSearch(const Ray& ray, double body, bool any, CellLog& log) : ray_(ray), body_(body), any_(any), log_(log) {}
+  // `is_covered(stretch)`: whether other members are proved to be all around it, so that a touch there is none.
+  CellSearch(const Ray& ray, double body, bool any, CellLog& log,
+             const std::function<bool(const Interval&)>& is_covered)
+      : ray_(ray), body_(body), any_(any), log_(log), is_covered_(is_covered) {}
 
   std::optional<TreeHit> in(const TreeCell& cell, const Interval& t) {
     if (cell.is_leaf()) return in(cell.tree(), FieldTree::whole, t, &cell);
@@ -128,7 +133,8 @@ class CellSearch {
   std::optional<TreeHit> in(const FieldTree& tree, std::uint32_t record, const Interval& t, const TreeCell* cell) {
     const CrossingSearch found = find_crossing(tree, record, ray_, t.lo, t.hi, body_, any_);
     log_.evaluations += found.evaluations;
-    log_.undecided = std::min(log_.undecided, found.undecided);
+    if (found.undecided < log_.undecided && !is_covered_({found.undecided, found.undecided_until}))
+      log_.undecided = found.undecided;
     return found.t ? std::optional(TreeHit{*found.t, cell}) : std::nullopt;
   }
 
@@ -137,6 +143,7 @@ class CellSearch {
   double body_;
   bool any_;
   CellLog& log_;
+  const std::function<bool(const Interval&)>& is_covered_;
 };
 
 }  // namespace
@@ -152,9 +159,12 @@ std::optional<TreeHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, b
   double stride = t.hi - t.lo;
   // of half the body, as the first cells are eighths
   const double body = (1 << (first_levels - 1)) * max_component(c.box.size());
+  const std::function<bool(const Interval&)> covered = [&](const Interval& stretch) {
+    return !members_.empty() && largest_of_others(c.member, stretch_of(ray, stretch)).lo > 1 + sums_are_off;
+  };
   while (t.lo <= t.hi) {
     // Any crossing is told by a place behind it: not what is_covered() asks for.
-    CellSearch search(onward, body, any && members_.empty(), log);
+    CellSearch search(onward, body, any && members_.empty(), log, covered);
     const auto hit = c.part != nullptr ? search.in(*c.part, t) : search.in(tree_, c.member, t, nullptr);
     // Where any crossing may lie behind the end of the ray, the first one tells. So it does of a ray that ends in the
     // cell: this search has looked at other places, and may have met a film that is thinner than gaps.

@@ -32,8 +32,9 @@ struct TreeHit {
 /// Safe to use from many threads.
 class TreeTracer {
  public:
-  /// Errors: a field whose surface is not bounded, or may be anywhere.
-  static Result<TreeTracer> make(FieldTree);
+  /// Of the surface `within` a box. Errors: a field whose surface is not bounded there, or may be anywhere.
+  static Result<TreeTracer> make(FieldTree, const Box3& within = everywhere);
+  static constexpr Box3 everywhere{{-Box3::inf, -Box3::inf, -Box3::inf}, {Box3::inf, Box3::inf, Box3::inf}};
 
   std::size_t cell_count() const { return cells_.size(); }
   const Box3& cell_box(std::size_t cell) const { return cells_[cell].box; }

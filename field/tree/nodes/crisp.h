@@ -27,14 +27,9 @@ struct Intersection {
   static void keys(auto&&) {}
 
   Box3 support(std::span<const Box3> children) const {
-    Box3 common = children[0];
-    for (const Box3& b : children) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        common.lower[i] = std::max(common.lower[i], b.lower[i]);
-        common.upper[i] = std::min(common.upper[i], b.upper[i]);
-      }
-    }
-    return common;
+    Box3 all = children[0];
+    for (const Box3& b : children) all = common(all, b);
+    return all;
   }
   template <Number X>
   X value(std::span<const X> f) const {

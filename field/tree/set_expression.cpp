@@ -1,0 +1,188 @@
+#include "field/tree/set_expression.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "field/tree/tree_node.h"
+
+namespace marrow {
+
+FieldTree part_of_tree(const FieldTree& tree, std::span<const std::uint32_t> of, const Affine& world_from_tree) {
+  const auto records = tree.records();
+  std::vector<bool> wanted(records.size(), false);
+  for (const std::uint32_t record : of) wanted[record] = true;
+  for (std::size_t i = records.size(); i-- > 0;)
+    if (wanted[i])
+      for (const std::uint32_t child : tree.children(records[i])) wanted[child] = true;
+
+  auto nodes = std::make_shared<std::vector<TreeNode>>();
+  nodes->push_back(CrispUnion{});  // in front, as in every list of nodes
+  std::vector<FieldTree::Record> made;
+  std::vector<std::uint32_t> children, index(records.size());
+  const auto append = [&](FieldTree::Record record, std::span<const std::uint32_t> below) {
+    record.first_child = static_cast<std::uint32_t>(children.size());
+    record.child_count = static_cast<std::uint32_t>(below.size());
+    for (const std::uint32_t child : below) children.push_back(index[child]);
+    made.push_back(std::move(record));
+    return static_cast<std::uint32_t>(made.size() - 1);
+  };
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (!wanted[i]) continue;
+    FieldTree::Record record = records[i];
+    record.node = static_cast<std::uint32_t>(nodes->size());
+    nodes->push_back(tree.node(records[i]));
+    index[i] = append(std::move(record), tree.children(records[i]));
+  }
+  // The root is the last of all: the only one wanted, or what holds them.
+  std::uint32_t root = index[of[0]];
+  if (of.size() > 1) root = append({}, of);
+  if (world_from_tree != Affine{}) {
+    index.push_back(root);
+    FieldTree::Record placed;
+    placed.node = static_cast<std::uint32_t>(nodes->size());
+    nodes->push_back(AffineWarp{world_from_tree, world_from_tree.inverse()});
+    append(std::move(placed), std::array{static_cast<std::uint32_t>(index.size() - 1)});
+  }
+  return FieldTree(std::move(nodes), std::move(made), std::move(children));
+}
+
+// Reads a tree from the root down.
+class SetExpression::Reader {
+ public:
+  Reader(const FieldTree& tree, const std::function<bool(const BlendField&)>& stands_alone)
+      : tree_(tree), alone_(tree.records().size()), beside_(tree.records().size()) {
+    for (std::size_t i = 0; i < alone_.size(); ++i) {
+      const FieldTree::Record& record = tree.records()[i];
+      const TreeNode& node = tree.node(record);
+      const auto* blend = std::get_if<BlendLeaf>(&node);
+      alone_[i] = blend != nullptr && stands_alone(*blend->field);
+      if (record.child_count == 0) beside_[i] = blend != nullptr ? static_cast<double>(blend->field->size()) : 1;
+      for (const std::uint32_t child : tree.children(record)) {
+        if (is_operation(node)) alone_[i] = alone_[i] || alone_[child];
+        beside_[i] += beside_[child];
+      }
+    }
+  }
+
+  SetExpression expression;
+
+  // False: there is more than an expression is for.
+  bool read(std::uint32_t root) {
+    if (!alone_[root]) return false;
+    const auto node = add(root, Affine{}, false);
+    expression.root_ = node;
+    return !too_large_;
+  }
+
+ private:
+  // Placements change nothing: operands are placed.
+  static bool is_operation(const TreeNode& node) {
+    return std::holds_alternative<CrispUnion>(node) || std::holds_alternative<Intersection>(node) ||
+           std::holds_alternative<Difference>(node) || std::holds_alternative<AffineWarp>(node);
+  }
+
+  NodeIndex add(std::uint32_t record, const Affine& world_from_parent, bool negated) {
+    too_large_ = too_large_ || ++entered_ > most_nodes;
+    if (too_large_) return 0;
+    const TreeNode& node = tree_.node(tree_.records()[record]);
+    if (const auto* warp = std::get_if<AffineWarp>(&node))
+      return add(children(record)[0], world_from_parent * warp->parent_from_child, negated);
+    if (const auto* blend = std::get_if<BlendLeaf>(&node))
+      return append(Operand{blend->field, world_from_parent, {}}, static_cast<double>(blend->field->size()), negated);
+    Node made;
+    made.negated = negated;
+    const bool is_difference = std::holds_alternative<Difference>(node);
+    made.kind = std::holds_alternative<CrispUnion>(node) ? Node::Kind::Union : Node::Kind::Intersection;
+    if (is_difference) add_first(record, world_from_parent, made);
+    add_children(children(record).subspan(is_difference ? 1 : 0), is_difference, world_from_parent, made);
+    if (too_large_) return 0;  // of what is there by now nothing will be asked
+    std::stable_sort(made.children.begin(), made.children.end(),
+                     [&](NodeIndex a, NodeIndex b) { return expression.nodes_[a].cost < expression.nodes_[b].cost; });
+    return append(std::move(made));
+  }
+
+  void add_first(std::uint32_t difference, const Affine& map, Node& to) {
+    const std::uint32_t first[] = {children(difference)[0]};
+    add_children(first, false, map, to);
+  }
+
+  // Those without a blend that stands alone are one operand together, as far as they do the same.
+  void add_children(std::span<const std::uint32_t> of, bool negated, const Affine& map, Node& to) {
+    if (too_large_) return;
+    std::vector<std::uint32_t> rest;
+    for (const std::uint32_t child : of) {
+      if (alone_[child]) to.children.push_back(add(child, map, negated));
+      else rest.push_back(child);
+    }
+    // Taken away is what is in any of them.
+    const bool is_union = negated || to.kind == Node::Kind::Union;
+    if (rest.empty()) return;
+    if (is_union) return void(to.children.push_back(add_rest(rest, map, negated)));
+    for (const std::uint32_t record : rest) to.children.push_back(add_rest(std::span(&record, 1), map, negated));
+  }
+
+  NodeIndex add_rest(std::span<const std::uint32_t> records, const Affine& map, bool negated) {
+    double primitives = 0;
+    for (const std::uint32_t record : records) primitives += beside_[record];
+    too_large_ = too_large_ || primitives > static_cast<double>(most_beside);
+    if (too_large_) return 0;
+    return append(Operand{nullptr, {}, part_of_tree(tree_, records, map)}, primitives, negated);
+  }
+
+  NodeIndex append(Operand operand, double cost, bool negated) {
+    Node node;
+    node.negated = negated;
+    node.operand = static_cast<std::uint32_t>(expression.operands_.size());
+    node.cost = cost;
+    expression.operands_.push_back(std::move(operand));
+    return append(std::move(node));
+  }
+  NodeIndex append(Node node) {
+    for (const NodeIndex child : node.children) node.cost += expression.nodes_[child].cost;
+    expression.nodes_.push_back(std::move(node));
+    too_large_ = too_large_ || expression.nodes_.size() > most_nodes;
+    return static_cast<NodeIndex>(expression.nodes_.size() - 1);
+  }
+
+  std::span<const std::uint32_t> children(std::uint32_t record) const {
+    return tree_.children(tree_.records()[record]);
+  }
+
+  const FieldTree& tree_;
+  std::vector<char> alone_;     // of records: whether a blend that stands alone is in it, below operations only
+  std::vector<double> beside_;  // of records: primitives below it
+  std::size_t entered_ = 0;     // records, so that no chain of them is followed too far
+  bool too_large_ = false;
+};
+
+std::optional<SetExpression> SetExpression::of(const FieldTree& tree, std::uint32_t record,
+                                               const std::function<bool(const BlendField&)>& stands_alone) {
+  Reader reader(tree, stands_alone);
+  if (!reader.read(record)) return {};
+  SetExpression made = std::move(reader.expression);
+  made.paths_.resize(made.operands_.size());
+  made.find_paths(made.root_, false, {});
+  return made;
+}
+
+void SetExpression::find_paths(NodeIndex index, bool is_taken_away, const std::vector<Condition>& above) {
+  const Node& node = nodes_[index];
+  is_taken_away = is_taken_away != node.negated;
+  if (node.kind == Node::Kind::Operand) {
+    paths_[node.operand] = {is_taken_away, above};
+    std::ranges::stable_sort(paths_[node.operand].conditions, {},
+                             [&](const Condition& c) { return nodes_[c.node].cost; });
+    return;
+  }
+  // What is in a union is so whatever the others say, unless they are all outside.
+  const Side idle = node.kind == Node::Kind::Union ? Side::Outside : Side::Inside;
+  for (const NodeIndex child : node.children) {
+    std::vector<Condition> conditions = above;
+    for (const NodeIndex other : node.children)
+      if (other != child) conditions.push_back({other, idle});
+    find_paths(child, is_taken_away, conditions);
+  }
+}
+
+}  // namespace marrow

@@ -1,0 +1,116 @@
+// A tree as crisp set operations on others: which of them a place is inside of tells whether it is inside the whole.
+//
+// With an operand for each part that a tracer of its own knows better, the surface of the whole is made of pieces of
+// the surfaces of its operands: where, as the other operands stand there, one of them decides.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "field/math/affine.h"
+#include "field/math/side.h"
+#include "field/tree/field_tree.h"
+
+namespace marrow {
+
+struct BlendField;
+
+class SetExpression {
+ public:
+  /// One blend that stands for itself, at its place; or all the rest below an operation, in world coordinates.
+  struct Operand {
+    std::shared_ptr<const BlendField> blend;  ///< null: `tree` is it
+    Affine world_from_blend;
+    FieldTree tree;
+  };
+
+  /// Of a tree, or of what stands below a record of it: unions, intersections and differences, crisp ones, with those
+  /// blends as operands that `stands_alone` says yes to. None where it holds no such blend, where there is more than
+  /// that one blend could tell (most_nodes), or where what is beside the blends is large (most_beside).
+  static std::optional<SetExpression> of(const FieldTree&, std::uint32_t record,
+                                         const std::function<bool(const BlendField&)>& stands_alone);
+
+  static constexpr std::size_t most_nodes = 64;    ///< operations and operands: all are asked at each crossing
+  static constexpr std::size_t most_beside = 512;  ///< primitives, all of which are summed at each crossing
+
+  const std::vector<Operand>& operands() const { return operands_; }
+  /// Whether the whole is inside where the operand is outside.
+  bool is_taken_away(std::size_t operand) const { return paths_[operand].is_taken_away; }
+
+  /// The side of the whole from those of its operands, side_of(operand), which are asked as far as needed. Unknown
+  /// where known ones do not tell.   [strong logic of three values: Kleene 1952]
+  template <class SideOf>
+  Side side(const SideOf& side_of) const {
+    return side_of_node(root_, side_of);
+  }
+
+  /// Whether the whole changes sides where the operand does, as the others stand; nothing where known ones do not tell.
+  template <class SideOf>
+  std::optional<bool> counts(std::size_t operand, const SideOf& side_of) const {
+    bool is_certain = true;
+    for (const Condition& c : paths_[operand].conditions) {
+      const Side side = side_of_node(c.node, side_of);
+      if (side == Side::Unknown) is_certain = false;
+      else if (side != c.wanted) return false;
+    }
+    return is_certain ? std::optional(true) : std::nullopt;
+  }
+
+ private:
+  using NodeIndex = std::uint32_t;
+  /// A union or intersection of children, or an operand; `negated`: of all that is outside it.
+  struct Node {
+    enum class Kind { Operand, Union, Intersection } kind = Kind::Operand;
+    bool negated = false;
+    std::uint32_t operand = 0;
+    std::vector<NodeIndex> children;  ///< those that are sooner asked first
+    double cost = 0;                  ///< to ask for its side, by its primitives
+  };
+  /// That a node beside the way from an operand to the root leaves the decision to it.
+  struct Condition {
+    NodeIndex node;
+    Side wanted;
+  };
+  struct Path {
+    bool is_taken_away = false;
+    std::vector<Condition> conditions;
+  };
+  class Reader;
+
+  template <class SideOf>
+  Side side_of_node(NodeIndex index, const SideOf& side_of) const {
+    const Node& node = nodes_[index];
+    Side side = Side::Unknown;
+    if (node.kind == Node::Kind::Operand) {
+      side = side_of(static_cast<std::size_t>(node.operand));
+    } else {
+      const Side decides = node.kind == Node::Kind::Union ? Side::Inside : Side::Outside;
+      side = opposite(decides);
+      for (const NodeIndex child : node.children) {
+        const Side of_child = side_of_node(child, side_of);
+        if (of_child == decides) {
+          side = decides;
+          break;
+        }
+        if (of_child == Side::Unknown) side = Side::Unknown;
+      }
+    }
+    return node.negated ? opposite(side) : side;
+  }
+  void find_paths(NodeIndex, bool is_taken_away, const std::vector<Condition>& above);
+
+  std::vector<Node> nodes_;
+  NodeIndex root_ = 0;
+  std::vector<Operand> operands_;
+  std::vector<Path> paths_;  // of operands
+};
+
+/// What stands below these records, as a union if there are several, placed in the world.
+FieldTree part_of_tree(const FieldTree&, std::span<const std::uint32_t> records, const Affine& world_from_tree);
+
+}  // namespace marrow
