@@ -14,6 +14,7 @@
 #include "renderer/app/report.h"
 #include "renderer/app/scene_input.h"
 #include "renderer/geometry/build_surfaces.h"
+#include "renderer/geometry/tree_parts.h"
 
 namespace marrow {
 namespace {
@@ -45,7 +46,8 @@ Json general_parts(const FieldProgram& program) {
   std::map<std::string, std::size_t> reasons;
   for (const PlacedBlend& part : program.parts())
     if (const std::string reason = untraceable_part(part.blend); !reason.empty()) ++reasons[reason];
-  if (!program.trees().empty()) reasons["operators, warps and bounded primitives"] = program.trees().size();
+  for (const FieldTree& tree : program.trees())
+    if (take_apart(tree).rest) ++reasons["operators, warps and bounded primitives"];
   Json parts = Json::array();
   for (const auto& [reason, count] : reasons) parts.push_back({{"parts", count}, {"because", reason}});
   return parts;

@@ -21,6 +21,7 @@
 #include "renderer/geometry/embree_surfaces.h"
 #include "renderer/geometry/field_solid.h"
 #include "renderer/geometry/mesh_solid.h"
+#include "renderer/geometry/tree_parts.h"
 #include "renderer/geometry/tree_solid.h"
 
 namespace marrow {
@@ -43,11 +44,9 @@ struct Traced {
   std::shared_ptr<RaySpacing> spacing = std::make_shared<RaySpacing>();
 };
 
-// What is made of blends by set operations: tracers of operands, null where only the general one knows them.
+// With the tracers of operands; null where only the general one knows them.
 struct Combined {
-  FieldTree whole;
-  Box3 bounds;
-  SetExpression expression;
+  CombinedBlends blends;
   std::vector<std::shared_ptr<Traced>> tracers;
 };
 
@@ -58,15 +57,6 @@ struct Compiled {
   std::vector<Combined> combined;  // and the rest of its trees
   std::vector<FieldTree> trees;
 };
-
-// Each is a solid of its own: of more the general tracer takes the rest.
-constexpr std::size_t most_combined = 256;
-
-// Of few skeletons the general tracer sees as much.
-bool is_worth_a_tracer(const BlendField& blend) {
-  constexpr std::size_t few = 32;
-  return blend.size() >= few && BlendTracer::refusal(blend).empty();
-}
 
 // Objects one by one into solids and planes; errors of all of them are gathered.
 class Builder {
@@ -115,7 +105,7 @@ class Builder {
       place(same, part.local_from_world);
       field.tracers.push_back(same);
     }
-    for (const FieldTree& tree : field.program.trees()) take_apart(tree, field);
+    for (const FieldTree& tree : field.program.trees()) add_tree(tree, field);
     return field;
   }
 
@@ -125,19 +115,13 @@ class Builder {
     same->spacing->samples = options_.samples;
   }
 
-  // Members that are made of blends by set operations go by themselves.
-  void take_apart(const FieldTree& tree, Compiled& field) {
+  // Blends under set operations have tracers of their own, however often they are placed.
+  void add_tree(const FieldTree& tree, Compiled& field) {
     std::map<const BlendField*, std::shared_ptr<Traced>> placed;
-    std::vector<std::uint32_t> rest;
-    const std::vector<Member> all = members(tree);
-    for (const Member& member : all) {
-      auto expression = SetExpression::of(tree, member.record, is_worth_a_tracer);
-      if (!expression || !is_finite(member.bounds.size()) || field.combined.size() >= most_combined) {
-        rest.push_back(member.record);
-        continue;
-      }
-      Combined made{part_of_tree(tree, {{member.record}}, {}), member.bounds, std::move(*expression), {}};
-      for (const SetExpression::Operand& operand : made.expression.operands()) {
+    TreeParts parts = take_apart(tree);
+    for (CombinedBlends& blends : parts.combined) {
+      Combined made{std::move(blends), {}};
+      for (const SetExpression::Operand& operand : made.blends.expression.operands()) {
         made.tracers.push_back(nullptr);
         if (operand.blend == nullptr) continue;
         place(placed[operand.blend.get()], operand.world_from_blend.inverse());
@@ -145,8 +129,7 @@ class Builder {
       }
       field.combined.push_back(std::move(made));
     }
-    if (rest.size() == all.size()) field.trees.push_back(tree);
-    else if (!rest.empty()) field.trees.push_back(part_of_tree(tree, rest, {}));
+    if (parts.rest) field.trees.push_back(std::move(*parts.rest));
   }
 
   void add(const Compiled& field, const ObjectDescription& object, ObjectId id) {
@@ -169,11 +152,13 @@ class Builder {
   }
 
   Result<std::unique_ptr<BooleanSolid>> boolean_solid(const Combined& combined, const ObjectDescription& object) {
+    const auto& [whole, bounds, expression] = combined.blends;
     const auto blend_solid = [&](std::size_t i) {
-      const auto& [blend, placed, tree] = combined.expression.operands()[i];
-      return as_operand(field_solid(*combined.tracers[i], {*blend, placed, placed.inverse()}, object));
+      const SetExpression::Operand& operand = combined.blends.expression.operands()[i];
+      const Affine& placed = operand.world_from_blend;
+      return as_operand(field_solid(*combined.tracers[i], {*operand.blend, placed, placed.inverse()}, object));
     };
-    return BooleanSolid::make(combined.whole, combined.bounds, combined.expression, object.material, blend_solid);
+    return BooleanSolid::make(whole, bounds, expression, object.material, blend_solid);
   }
 
   template <class SolidType>

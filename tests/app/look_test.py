@@ -56,6 +56,17 @@ class InfoTest(ProgramTest):
         quick = json.loads(self.expect(0, "info", self.write("point.yaml", POINT), "--json").stdout)
         self.assertEqual(quick["objects"][0]["general_tracer"], [])
 
+    def test_a_cut_through_many_skeletons_is_not_slow(self):
+        line = "[" + ", ".join(f"[{i / 40 - 0.5}, 0, 0]" for i in range(41)) + "]"
+        blend = f"blend: {{of: [{{polyline: {{points: {line}, radius: 0.2}}}}]}}"
+        plane = "plane: {point: [0, 0, 0], normal: [0, 0, 1]}"
+        head = POINT[:POINT.index("    field:")] + "    field: "
+        for field, parts in ((f"{{difference: {{of: [{{{blend}}}, {{{plane}}}]}}}}", []),
+                             (f"{{twist: {{angle: 90, of: {{{blend}}}}}}}", [1])):
+            scene = self.write("cut.yaml", head + field + "\n")
+            told = json.loads(self.expect(0, "info", scene, "--json").stdout)
+            self.assertEqual([part["parts"] for part in told["objects"][0]["general_tracer"]], parts)
+
     def test_people_get_text(self):
         text = self.expect(0, "info", self.write("point.yaml", POINT)).stdout
         for word in ("ball", "primitives", "tiles", "memory", "bounds", "constant", "diffuse"):

@@ -122,6 +122,8 @@ void judge_hit(const TreeScene& scene, const Ray& ray, const SurfaceHit& hit, co
   }
   if (!from_afar || !(slopes.along > 0.1 * slopes.steepness)) return;
   judge_limits(scene, ray, hit, slack, family, v);
+  // Beside an edge the field may fall to both sides from just below 1, however steep: such hits are in `grazing`.
+  if (scene.kind() == cuts_kind && !changes_near(along, hit.t, slack)) return;
   judge_ulps(scene, along, hit, slopes, v);
 }
 
