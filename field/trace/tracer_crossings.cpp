@@ -32,7 +32,7 @@ std::optional<CellHit> BlendTracer::first_crossing(const TracePart& part, const 
   CellWalk walk;
   walk.start(state_->tree, state_->kernels, part.within == nullptr ? tile : state_->tree.child(tile, part.slot), ray,
              stretch->enter, stretch->exit);
-  for (CellStep step; walk.next(step);)
+  for (CellStep step; walk.next(step) && step.enter <= ray.t_max;)
     if (const auto hit = crossing_in(*step.tile, step.slot, ray, step.enter, step.exit, filter, log)) return hit;
   return {};
 }

@@ -50,7 +50,7 @@ FieldTree part_of_tree(const FieldTree& tree, std::span<const std::uint32_t> of,
 // Reads a tree from the root down.
 class SetExpression::Reader {
  public:
-  Reader(const FieldTree& tree, const std::function<bool(const BlendField&)>& stands_alone)
+  Reader(const FieldTree& tree, const StandsAlone& stands_alone)
       : tree_(tree), alone_(tree.records().size()), beside_(tree.records().size()) {
     for (std::size_t i = 0; i < alone_.size(); ++i) {
       const FieldTree::Record& record = tree.records()[i];
@@ -65,14 +65,18 @@ class SetExpression::Reader {
     }
   }
 
-  SetExpression expression;
-
-  // False: there is more than an expression is for.
-  bool read(std::uint32_t root) {
-    if (!alone_[root]) return false;
-    const auto node = add(root, Affine{}, false);
-    expression.root_ = node;
-    return !too_large_;
+  // None where there is more than an expression is for.
+  std::optional<SetExpression> read(std::uint32_t root) {
+    if (!alone_[root]) return {};
+    made_ = {};
+    entered_ = 0;
+    too_large_ = false;
+    const NodeIndex node = add(root, Affine{}, false);
+    if (too_large_) return {};
+    made_.root_ = node;
+    made_.paths_.resize(made_.operands_.size());
+    made_.find_paths(node, false, {});
+    return std::move(made_);
   }
 
  private:
@@ -98,7 +102,7 @@ class SetExpression::Reader {
     add_children(children(record).subspan(is_difference ? 1 : 0), is_difference, world_from_parent, made);
     if (too_large_) return 0;  // of what is there by now nothing will be asked
     std::stable_sort(made.children.begin(), made.children.end(),
-                     [&](NodeIndex a, NodeIndex b) { return expression.nodes_[a].cost < expression.nodes_[b].cost; });
+                     [&](NodeIndex a, NodeIndex b) { return made_.nodes_[a].cost < made_.nodes_[b].cost; });
     return append(std::move(made));
   }
 
@@ -133,16 +137,16 @@ class SetExpression::Reader {
   NodeIndex append(Operand operand, double cost, bool negated) {
     Node node;
     node.negated = negated;
-    node.operand = static_cast<std::uint32_t>(expression.operands_.size());
+    node.operand = static_cast<std::uint32_t>(made_.operands_.size());
     node.cost = cost;
-    expression.operands_.push_back(std::move(operand));
+    made_.operands_.push_back(std::move(operand));
     return append(std::move(node));
   }
   NodeIndex append(Node node) {
-    for (const NodeIndex child : node.children) node.cost += expression.nodes_[child].cost;
-    expression.nodes_.push_back(std::move(node));
-    too_large_ = too_large_ || expression.nodes_.size() > most_nodes;
-    return static_cast<NodeIndex>(expression.nodes_.size() - 1);
+    for (const NodeIndex child : node.children) node.cost += made_.nodes_[child].cost;
+    made_.nodes_.push_back(std::move(node));
+    too_large_ = too_large_ || made_.nodes_.size() > most_nodes;
+    return static_cast<NodeIndex>(made_.nodes_.size() - 1);
   }
 
   std::span<const std::uint32_t> children(std::uint32_t record) const {
@@ -152,18 +156,23 @@ class SetExpression::Reader {
   const FieldTree& tree_;
   std::vector<char> alone_;     // of records: whether a blend that stands alone is in it, below operations only
   std::vector<double> beside_;  // of records: primitives below it
-  std::size_t entered_ = 0;     // records, so that no chain of them is followed too far
+  SetExpression made_;
+  std::size_t entered_ = 0;  // records, so that no chain of them is followed too far
   bool too_large_ = false;
 };
 
-std::optional<SetExpression> SetExpression::of(const FieldTree& tree, std::uint32_t record,
-                                               const std::function<bool(const BlendField&)>& stands_alone) {
+std::vector<std::optional<SetExpression>> SetExpression::of(const FieldTree& tree,
+                                                            std::span<const std::uint32_t> records,
+                                                            const StandsAlone& stands_alone) {
   Reader reader(tree, stands_alone);
-  if (!reader.read(record)) return {};
-  SetExpression made = std::move(reader.expression);
-  made.paths_.resize(made.operands_.size());
-  made.find_paths(made.root_, false, {});
+  std::vector<std::optional<SetExpression>> made;
+  for (const std::uint32_t record : records) made.push_back(reader.read(record));
   return made;
+}
+
+std::optional<SetExpression> SetExpression::of(const FieldTree& tree, std::uint32_t record,
+                                               const StandsAlone& stands_alone) {
+  return std::move(of(tree, std::span(&record, 1), stands_alone).front());
 }
 
 void SetExpression::find_paths(NodeIndex index, bool is_taken_away, const std::vector<Condition>& above) {

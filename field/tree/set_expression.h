@@ -29,11 +29,14 @@ class SetExpression {
     FieldTree tree;
   };
 
+  using StandsAlone = std::function<bool(const BlendField&)>;
   /// Of a tree, or of what stands below a record of it: unions, intersections and differences, crisp ones, with those
-  /// blends as operands that `stands_alone` says yes to. None where it holds no such blend, where there is more than
+  /// blends as operands that are said to stand alone. None where it holds no such blend, where there is more than
   /// that one blend could tell (most_nodes), or where what is beside the blends is large (most_beside).
-  static std::optional<SetExpression> of(const FieldTree&, std::uint32_t record,
-                                         const std::function<bool(const BlendField&)>& stands_alone);
+  static std::optional<SetExpression> of(const FieldTree&, std::uint32_t record, const StandsAlone&);
+  /// The same of each of many records, at once.
+  static std::vector<std::optional<SetExpression>> of(const FieldTree&, std::span<const std::uint32_t> records,
+                                                      const StandsAlone&);
 
   static constexpr std::size_t most_nodes = 64;    ///< operations and operands: all are asked at each crossing
   static constexpr std::size_t most_beside = 512;  ///< primitives, all of which are summed at each crossing

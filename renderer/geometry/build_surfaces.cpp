@@ -132,7 +132,7 @@ class Builder {
     if (parts.rest) field.trees.push_back(std::move(*parts.rest));
   }
 
-  void add(const Compiled& field, const ObjectDescription& object, ObjectId id) {
+  void add(Compiled field, const ObjectDescription& object, ObjectId id) {
     for (std::size_t i = 0; i < field.tracers.size(); ++i) {
       const PlacedBlend& part = field.program.parts()[i];
       Traced* const same = field.tracers[i].get();
@@ -140,7 +140,7 @@ class Builder {
       else add(field_solid(*same, part, object), object, id);
     }
     for (const Combined& combined : field.combined) add(boolean_solid(combined, object), object, id);
-    for (const FieldTree& tree : field.trees) add(TreeSolid::make(tree, object.material), object, id);
+    for (FieldTree& tree : field.trees) add(TreeSolid::make(std::move(tree), object.material), object, id);
   }
 
   Result<std::unique_ptr<FieldSolid>> field_solid(Traced& same, const PlacedBlend& part,

@@ -21,16 +21,17 @@ bool is_worth_a_tracer(const BlendField& blend) {
 
 TreeParts take_apart(const FieldTree& tree) {
   TreeParts parts;
-  std::vector<std::uint32_t> rest;
   const std::vector<Member> all = members(tree);
-  for (const Member& member : all) {
-    std::optional<SetExpression> expression;
-    if (is_finite(member.bounds.size()) && parts.combined.size() < most_combined)
-      expression = SetExpression::of(tree, member.record, is_worth_a_tracer);
-    if (!expression) rest.push_back(member.record);
-    else parts.combined.push_back({part_of_tree(tree, {{member.record}}, {}), member.bounds, std::move(*expression)});
+  std::vector<std::uint32_t> records, rest;
+  for (const Member& member : all) records.push_back(member.record);
+  auto expressions = SetExpression::of(tree, records, is_worth_a_tracer);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto& [record, bounds, is_leaf] = all[i];
+    if (expressions[i] && is_finite(bounds.size()) && parts.combined.size() < most_combined)
+      parts.combined.push_back({part_of_tree(tree, {{record}}, {}), bounds, std::move(*expressions[i])});
+    else rest.push_back(record);
   }
-  if (rest.size() == all.size()) parts.rest = tree;
+  if (parts.combined.empty()) parts.rest = tree;
   else if (!rest.empty()) parts.rest = part_of_tree(tree, rest, {});
   return parts;
 }
