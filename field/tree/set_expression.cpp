@@ -80,10 +80,15 @@ class SetExpression::Reader {
   }
 
  private:
+  template <class... Kinds>
+  static bool is_any_of(const TreeNode& node) {
+    return (std::holds_alternative<Kinds>(node) || ...);
+  }
+  static bool is_union(const TreeNode& node) { return is_any_of<CrispUnion, SharpUnion>(node); }
+  static bool is_difference(const TreeNode& node) { return is_any_of<Difference, SharpDifference>(node); }
   // Placements change nothing: operands are placed.
   static bool is_operation(const TreeNode& node) {
-    return std::holds_alternative<CrispUnion>(node) || std::holds_alternative<Intersection>(node) ||
-           std::holds_alternative<Difference>(node) || std::holds_alternative<AffineWarp>(node);
+    return is_union(node) || is_difference(node) || is_any_of<Intersection, SharpIntersection, AffineWarp>(node);
   }
 
   NodeIndex add(std::uint32_t record, const Affine& world_from_parent, bool negated) {
@@ -96,10 +101,10 @@ class SetExpression::Reader {
       return append(Operand{blend->field, world_from_parent, {}}, static_cast<double>(blend->field->size()), negated);
     Node made;
     made.negated = negated;
-    const bool is_difference = std::holds_alternative<Difference>(node);
-    made.kind = std::holds_alternative<CrispUnion>(node) ? Node::Kind::Union : Node::Kind::Intersection;
-    if (is_difference) add_first(record, world_from_parent, made);
-    add_children(children(record).subspan(is_difference ? 1 : 0), is_difference, world_from_parent, made);
+    const bool takes_away = is_difference(node);
+    made.kind = is_union(node) ? Node::Kind::Union : Node::Kind::Intersection;
+    if (takes_away) add_first(record, world_from_parent, made);
+    add_children(children(record).subspan(takes_away ? 1 : 0), takes_away, world_from_parent, made);
     if (too_large_) return 0;  // of what is there by now nothing will be asked
     std::stable_sort(made.children.begin(), made.children.end(),
                      [&](NodeIndex a, NodeIndex b) { return made_.nodes_[a].cost < made_.nodes_[b].cost; });

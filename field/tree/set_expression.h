@@ -1,4 +1,5 @@
-// A tree as crisp set operations on others: which of them a place is inside of tells whether it is inside the whole.
+// A tree as crisp or sharp set operations on others: which of them a place is inside of tells whether it is inside the
+// whole.
 //
 // With an operand for each part that a tracer of its own knows better, the surface of the whole is made of pieces of
 // the surfaces of its operands: where, as the other operands stand there, one of them decides.
@@ -30,9 +31,10 @@ class SetExpression {
   };
 
   using StandsAlone = std::function<bool(const BlendField&)>;
-  /// Of a tree, or of what stands below a record of it: unions, intersections and differences, crisp ones, with those
-  /// blends as operands that are said to stand alone. None where it holds no such blend, where there is more than
-  /// that one blend could tell (most_nodes), or where what is beside the blends is large (most_beside).
+  /// Of a tree, or of what stands below a record of it: unions, intersections and differences, crisp or sharp ones,
+  /// which have the same surface, with those blends as operands that are said to stand alone. None where it holds no
+  /// such blend, where there is more than that one blend could tell (most_nodes), or where what is beside the blends is
+  /// large (most_beside).
   static std::optional<SetExpression> of(const FieldTree&, std::uint32_t record, const StandsAlone&);
   /// The same of each of many records, at once.
   static std::vector<std::optional<SetExpression>> of(const FieldTree&, std::span<const std::uint32_t> records,

@@ -1,4 +1,4 @@
-// Solids under crisp set operations: what is inside some of them and outside others.
+// Solids under crisp or sharp set operations: what is inside some of them and outside others.
 //
 // Its surface consists of pieces of those of its operands. Each of them is traced by itself, where it is not certain
 // that the others leave nothing of it; a crossing counts where the whole changes sides with the operand, as the others

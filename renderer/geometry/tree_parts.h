@@ -10,7 +10,7 @@
 
 namespace marrow {
 
-/// Blends of many skeletons under crisp unions, intersections and differences.
+/// Blends of many skeletons under crisp or sharp unions, intersections and differences.
 struct CombinedBlends {
   FieldTree whole;
   Box3 bounds;  ///< of its surface

@@ -295,23 +295,26 @@ std::uint32_t cutter(BodyDraft& d, Random& random) {
   }
 }
 
-// Crisp set operations, one on the other, on blends of many skeletons.
+// Crisp and sharp set operations, one on the other, on blends of many skeletons.
 void cuts(BodyDraft& d, Random& random) {
   std::uint32_t one = traced_strands(d, random);
   for (int i = random.whole(1, 3); i > 0; --i) {
     const std::uint32_t other = cutter(d, random);
-    switch (random.whole(0, 4)) {
+    switch (random.whole(0, 5)) {
       case 0:
-        one = d.of(Intersection{}, {one, other});
+        one = d.one_of<Intersection, SharpIntersection>({one, other});
         break;
       case 1:
-        one = d.of(Difference{}, {other, one});
+        one = d.one_of<Difference, SharpDifference>({other, one});
         break;
       case 2:
-        one = d.of(CrispUnion{}, {other, one});
+        one = d.one_of<CrispUnion, SharpUnion>({other, one});
+        break;
+      case 3:
+        one = d.of(Difference{}, {one, other});
         break;
       default:
-        one = d.of(Difference{}, {one, other});
+        one = d.one_of<Difference, SharpDifference>({one, other});
     }
   }
   d.bodies = {one};

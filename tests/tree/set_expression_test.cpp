@@ -26,13 +26,20 @@ std::uint32_t operations(Random& random, RandomTree& tree, int levels) {
   for (int i = random.whole(1, 3); i > 0; --i) of.push_back(operations(random, tree, random.whole(0, levels - 1)));
   const Affine place = Affine::translate(random.vector(0.5)) *
                        Affine::rotate(normalize(Vec3d{1, random.between(0, 1), 0}), random.between(0, 3));
-  switch (random.whole(0, 3)) {
+  const double smooth = random.between(0, 1);
+  switch (random.whole(0, 6)) {
     case 0:
       return tree.record(CrispUnion{}, of);
     case 1:
       return tree.record(Intersection{}, of);
     case 2:
       return tree.record(AffineWarp{place, place.inverse()}, {of[0]});
+    case 3:
+      return tree.record(SharpUnion{smooth}, of);
+    case 4:
+      return tree.record(SharpIntersection{smooth}, of);
+    case 5:
+      return tree.record(SharpDifference{smooth}, of);
     default:
       return tree.record(Difference{}, of);
   }
