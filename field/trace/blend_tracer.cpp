@@ -41,6 +41,14 @@ const Block& BlendTracer::block(const Tile& tile, int slot) const {
       [&] { return std::make_unique<const Block>(state_->context, CellTree::cell(tile, slot)); });
 }
 
+// Null, and noted, where a cell turns out to hold no surface.
+const Block* BlendTracer::block_to_search(const Tile& tile, int slot) const {
+  const Block& made = block(tile, slot);
+  if (!made.empty()) return &made;
+  tile.note_empty(slot);
+  return nullptr;
+}
+
 std::optional<CellHit> BlendTracer::first_hit(std::size_t tile, const Ray& ray, bool any, CellLog& log) const {
   const Tile& made = state_->tree.tile(tile);
   const auto [enter, exit] = clip_to_tile(made, ray, any);
@@ -79,11 +87,9 @@ bool BlendTracer::is_inside(const Vec3d& beginning) const {
 
 std::optional<CellHit> BlendTracer::hit_in(const Tile& tile, int slot, const Ray& ray, bool any, double enter,
                                            double exit, CellLog& log) const {
-  const Block& b = block(tile, slot);
-  if (b.empty()) {
-    tile.note_empty(slot);
-    return {};
-  }
+  const Block* searched = block_to_search(tile, slot);
+  if (searched == nullptr) return {};
+  const Block& b = *searched;
   const RayInCube cube(ray, b.center(), b.half());
   BlockKernels::Query query{.t0 = cube.to_local(enter),
                             .t1 = cube.to_local(exit),

@@ -196,6 +196,7 @@ class BlendTracer {
                                        float nearest) const;
   void add_parts(std::size_t tile, const Tile& within, std::vector<TracePart>&) const;
   const Block& block(const Tile&, int slot) const;
+  const Block* block_to_search(const Tile&, int slot) const;
   std::unique_ptr<State> state_;
 };
 

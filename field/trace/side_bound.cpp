@@ -89,6 +89,12 @@ bool SideBound::add_piece(const Piece& piece, const Vec3d& p, int halvings, Sums
   return true;
 }
 
+bool SideBound::add_leaf(const SourceNode& leaf, const Vec3d& p, Sums& sums) const {
+  for (const Piece& piece : tree_.pieces().subspan(leaf.begin, leaf.end - leaf.begin))
+    if (!add_piece(piece, p, most_halvings, sums)) return false;
+  return true;
+}
+
 // Whether a piece of a leaf has p inside by its own field.
 bool SideBound::is_inside_alone(const SourceNode& leaf, const Vec3d& p) const {
   for (const Piece& piece : tree_.pieces().subspan(leaf.begin, leaf.end - leaf.begin))
@@ -109,29 +115,47 @@ Side SideBound::side(const Vec3d& p) const {
   return side == Side::Unknown ? side_by_sums(p, close) : side;
 }
 
-Side SideBound::side_by_sums(const Vec3d& p, double may_be_off) const {
+namespace {
+
+// What comes of a group: it is taken as it is, or opened, or no other matters any more.
+enum class Visit { Taken, Opened, Last };
+
+// visit(node) of the groups of a tree, from its roots down. Returns whether it went on to the end.
+template <class VisitNode>
+bool visit_groups(const SourceTree& tree, const VisitNode& visit) {
   // The halves of a node wait while its parts are looked at: one for each level, and 2^31 pieces have fewer.
   std::array<std::uint32_t, 64> open;
-  Sums sums{.may_be_off = may_be_off};
-  for (const SourceRef root : tree_.roots()) {
+  for (const SourceRef root : tree.roots()) {
     std::size_t count = 0;
     open[count++] = root.index();
     while (count > 0) {
       const std::uint32_t index = open[--count];
-      const SourceNode& node = tree_.node(index);
-      if (add_group(node, p - node.center, sums)) continue;
-      if (node.is_leaf()) {
-        if (is_inside_alone(node, p)) return Side::Inside;
-        for (const Piece& piece : tree_.pieces().subspan(node.begin, node.end - node.begin))
-          if (!add_piece(piece, p, most_halvings, sums)) return Side::Unknown;
-      } else {
-        open[count++] = node.right;
-        open[count++] = index + 1;
-      }
-      if (sums.field - sums.field_error > raised * iso_.critical_field()) return Side::Inside;
+      const Visit done = visit(tree.node(index));
+      if (done == Visit::Last) return false;
+      if (done == Visit::Taken) continue;
+      open[count++] = tree.node(index).right;
+      open[count++] = index + 1;
     }
   }
-  return side_by(sums);
+  return true;
+}
+
+}  // namespace
+
+Side SideBound::side_by_sums(const Vec3d& p, double may_be_off) const {
+  Sums sums{.may_be_off = may_be_off};
+  Side told = Side::Unknown;
+  const bool all_taken = visit_groups(tree_, [&](const SourceNode& node) {
+    if (!add_group(node, p - node.center, sums)) {
+      if (!node.is_leaf()) return Visit::Opened;
+      if (is_inside_alone(node, p)) told = Side::Inside;
+      if (told == Side::Inside || !add_leaf(node, p, sums)) return Visit::Last;
+    }
+    if (sums.field - sums.field_error <= raised * iso_.critical_field()) return Visit::Taken;
+    told = Side::Inside;
+    return Visit::Last;
+  });
+  return all_taken ? side_by(sums) : told;
 }
 
 // Around a box, with what f and |grad_S f| come to in it at most.
@@ -163,25 +187,14 @@ bool SideBound::add_leaf(const SourceNode& leaf, Ball& ball) const {
 Side SideBound::side(const Box3& box) const {
   constexpr double far = 2;  // times what they reach groups are taken as they are
   Ball ball{.center = box.center(), .radius = 0.5 * length(box.size())};
-  std::array<std::uint32_t, 64> open;
-  for (const SourceRef root : tree_.roots()) {
-    std::size_t count = 0;
-    open[count++] = root.index();
-    while (count > 0) {
-      const std::uint32_t index = open[--count];
-      const SourceNode& node = tree_.node(index);
-      const double away = length(ball.center - node.center), reach = node.radius + ball.radius;
-      if (away > far * reach) {
-        ball.add(node.mass, node.tau_mass, away - reach, node.exponent);
-      } else if (!node.is_leaf()) {
-        open[count++] = node.right;
-        open[count++] = index + 1;
-      } else if (!add_leaf(node, ball)) {
-        return ball.holds_inside ? Side::Inside : Side::Unknown;
-      }
-      if (ball.field > iso_.critical_field()) return Side::Unknown;
-    }
-  }
+  const bool all_taken = visit_groups(tree_, [&](const SourceNode& node) {
+    const double away = length(ball.center - node.center), reach = node.radius + ball.radius;
+    if (away > far * reach) ball.add(node.mass, node.tau_mass, away - reach, node.exponent);
+    else if (!node.is_leaf()) return Visit::Opened;
+    else if (!add_leaf(node, ball)) return Visit::Last;
+    return ball.field > iso_.critical_field() ? Visit::Last : Visit::Taken;
+  });
+  if (!all_taken) return ball.holds_inside ? Side::Inside : Side::Unknown;
   return iso_.outside(0, raised * ball.field, raised * ball.gradient) ? Side::Outside : Side::Unknown;
 }
 

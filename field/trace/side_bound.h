@@ -30,6 +30,7 @@ class SideBound {
   struct Sums;
   bool add_group(const SourceNode&, const Vec3d& from_group, Sums&) const;
   bool add_piece(const Piece&, const Vec3d& p, int halvings, Sums&) const;
+  bool add_leaf(const SourceNode&, const Vec3d& p, Sums&) const;
   bool is_inside_alone(const SourceNode& leaf, const Vec3d& p) const;
   Side side_by(const Sums&) const;
   Side side_by_sums(const Vec3d& p, double may_be_off) const;

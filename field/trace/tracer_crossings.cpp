@@ -42,11 +42,9 @@ std::optional<CellHit> BlendTracer::crossing_in(const Tile& tile, int slot, cons
   const auto all_count = filter.counts_in(CellTree::cell(tile, slot).box());
   if (!all_count.value_or(true)) return {};
   const auto counts = [&](double t) { return all_count.has_value() || filter.counts_at(t); };
-  const Block& b = block(tile, slot);
-  if (b.empty()) {
-    tile.note_empty(slot);
-    return {};
-  }
+  const Block* searchable = block_to_search(tile, slot);
+  if (searchable == nullptr) return {};
+  const Block& b = *searchable;
   const RayInCube cube(ray, b.center(), b.half());
   BlockKernels::Query query{.t0 = cube.to_local(enter),
                             .t1 = cube.to_local(exit),

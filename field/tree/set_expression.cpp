@@ -125,9 +125,9 @@ class SetExpression::Reader {
       else rest.push_back(child);
     }
     // Taken away is what is in any of them.
-    const bool is_union = negated || to.kind == Node::Kind::Union;
+    const bool as_one = negated || to.kind == Node::Kind::Union;
     if (rest.empty()) return;
-    if (is_union) return void(to.children.push_back(add_rest(rest, map, negated)));
+    if (as_one) return void(to.children.push_back(add_rest(rest, map, negated)));
     for (const std::uint32_t record : rest) to.children.push_back(add_rest(std::span(&record, 1), map, negated));
   }
 

@@ -33,8 +33,7 @@ class SetExpression {
   using StandsAlone = std::function<bool(const BlendField&)>;
   /// Of a tree, or of what stands below a record of it: unions, intersections and differences, crisp or sharp ones,
   /// which have the same surface, with those blends as operands that are said to stand alone. None where it holds no
-  /// such blend, where there is more than that one blend could tell (most_nodes), or where what is beside the blends is
-  /// large (most_beside).
+  /// such blend, or more than an expression is for (most_nodes, most_beside).
   static std::optional<SetExpression> of(const FieldTree&, std::uint32_t record, const StandsAlone&);
   /// The same of each of many records, at once.
   static std::vector<std::optional<SetExpression>> of(const FieldTree&, std::span<const std::uint32_t> records,

@@ -19,6 +19,9 @@ constexpr double beside_box = 1e-3;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+// By which places of a ray may be off.
+double rounding_at(const Ray& ray, double t) { return 0x1p-50 * (max_component(abs(ray.origin)) + std::fabs(t)); }
+
 }  // namespace
 
 Result<std::unique_ptr<BooleanSolid>> BooleanSolid::make(FieldTree whole, const Box3& bounds, SetExpression expression,
@@ -69,7 +72,7 @@ std::optional<bool> BooleanSolid::counts_in(std::size_t operand, const Box3& box
 // other to come first, and none would count. There the sides of the whole before and behind the crossing tell.
 bool BooleanSolid::counts_at(std::size_t operand, const Ray& ray, double t) const {
   const Vec3d p = ray.at(t);
-  const double rounding = 0x1p-50 * (max_component(abs(ray.origin)) + std::fabs(t));
+  const double rounding = rounding_at(ray, t);
   const auto side = [&](std::size_t other) { return side_of_operand(other, p, rounding); };
   if (const auto counts = expression_.counts(operand, side)) return *counts;
   const Side before = side_along(ray, t, -1), behind = side_along(ray, t, 1);
@@ -92,13 +95,12 @@ bool BooleanSolid::is_entered_later(std::size_t operand, const Ray& ray, double 
     const double middle = 0.5 * (before + entered);
     (value(ray.at(middle)) < 1 ? before : entered) = middle;
   }
-  return entered > t && side_of_operand(operand, ray.at(entered), 0x1p-50 * away) != Side::Unknown;
+  return entered > t && side_of_operand(operand, ray.at(entered), rounding_at(ray, t)) != Side::Unknown;
 }
 
 // At the first of growing steps from t where it is certain.
 Side BooleanSolid::side_along(const Ray& ray, double t, double way) const {
-  const double size = max_component(bounds_.size()), longest = 1e-3 * size,
-               rounding = 0x1p-50 * (max_component(abs(ray.origin)) + std::fabs(t));
+  const double size = max_component(bounds_.size()), longest = 1e-3 * size, rounding = rounding_at(ray, t);
   for (double step = 4 * rounding + 0x1p-48 * size; step < longest; step *= 2)
     if (const Side side = side_of_whole(ray.at(t + way * step), rounding); side != Side::Unknown) return side;
   return Side::Unknown;

