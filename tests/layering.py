@@ -9,10 +9,11 @@ import re
 import sys
 import tempfile
 
-BELOW_TRACE = ["field/base", "field/math", "field/number", "field/description", "field/kernel", "field/skeleton",
-               "field/blend", "field/tree", "field/program"]
+BELOW_BLEND = ["field/base", "field/math", "field/number", "field/description", "field/kernel", "field/skeleton"]
+BELOW_TRACE = BELOW_BLEND + ["field/blend", "field/tree", "field/program"]
 
-# A folder may include itself, with all in it, and the folders named here. A trailing file name opens that file only.
+# A folder may include the folders named here and itself, with all in it that may not include the folder. A trailing file
+# name opens that file only.
 ARROWS = {
     "field/base": [],
     "field/math": ["field/base"],
@@ -20,12 +21,21 @@ ARROWS = {
     "field/description": ["field/base", "field/math"],
     "field/kernel": ["field/base", "field/math", "field/description"],
     "field/skeleton": ["field/base", "field/math", "field/number", "field/description", "field/kernel"],
-    "field/blend": ["field/base", "field/math", "field/number", "field/description", "field/kernel",
-                    "field/skeleton"],
-    "field/tree": ["field/base", "field/math", "field/number", "field/description", "field/kernel", "field/skeleton",
-                   "field/blend"],
-    "field/program": ["field/base", "field/math", "field/number", "field/description", "field/kernel",
-                      "field/skeleton", "field/blend", "field/tree"],
+    "field/blend/correction": BELOW_BLEND,
+    "field/blend/angle": BELOW_BLEND + ["field/blend/correction"],
+    "field/blend/sources": BELOW_BLEND,
+    "field/blend": BELOW_BLEND,
+    "field/blend/bounds/sum": BELOW_BLEND + ["field/blend/blend_field.h", "field/blend/primitive_bounds.h",
+                                             "field/blend/sources"],
+    "field/blend/bounds/correction": BELOW_BLEND + ["field/blend/blend_field.h", "field/blend/correction"],
+    "field/blend/bounds/angle": BELOW_BLEND + ["field/blend/angle", "field/blend/blend_field.h",
+                                               "field/blend/gather.h", "field/blend/primitive_bounds.h",
+                                               "field/blend/primitive_visit.h", "field/blend/bounds/sum"],
+    "field/blend/bounds": BELOW_BLEND + ["field/blend/correction", "field/blend/blend_field.h"],
+    "field/blend/local": BELOW_BLEND + ["field/blend/correction", "field/blend/blend_field.h", "field/blend/sources",
+                                        "field/blend/bounds"],
+    "field/tree": BELOW_BLEND + ["field/blend"],
+    "field/program": BELOW_BLEND + ["field/blend", "field/tree"],
     "field/trace/curve": BELOW_TRACE,
     "field/trace/kernels": BELOW_TRACE + ["field/trace/curve"],
     "field/trace/sources": BELOW_TRACE + ["field/trace/kernels"],
@@ -76,10 +86,16 @@ def folder_of(path):
     return max(inside, key=len, default=None)
 
 
+def leads_to(other, home):
+    """Whether a folder other than `home` may include `home`, or a file of it."""
+    return other not in (None, home) and any(folder_of(name + "/") == home for name in ARROWS[other])
+
+
 def may_include(path, target):
     home = folder_of(path)
     allowed = [home] + ARROWS[home]
-    return any(target == name or target.startswith(name + "/") for name in allowed)
+    return (any(target == name or target.startswith(name + "/") for name in allowed)
+            and not leads_to(folder_of(target), home))
 
 
 def may_use_library(path, header):
@@ -111,14 +127,18 @@ def complaints(root):
 def self_test():
     wrong = {
         "field/math/a.h": '#include "field/program/field_program.h"\n',
+        "field/blend/a.h": '#include "field/blend/bounds/blend_bounds.h"\n',
+        "field/blend/bounds/sum/a.h": '#include "field/blend/gather.h"\n',
         "field/trace/sources/a.h": '#include "field/trace/cells/tile.h"\n',
         "field/program/b.cpp": '#include "renderer/scene/scene_description.h"\n',
-        "materials/c.h": '#include "field/blend/correction.h"\n',
+        "materials/c.h": '#include "field/blend/correction/correction.h"\n',
         "renderer/output/d.h": "#include <OpenEXR/ImfHeader.h>\n",
         "renderer/app/e.cpp": "#include <embree3/rtcore.h>\n",
         "field/unknown/f.h": "",
     }
     right = {
+        "field/blend/bounds/a.cpp": '#include "field/blend/bounds/sum/sum_bounds.h"\n',
+        "field/blend/g.cpp": '#include "field/blend/correction/correction.h"\n',
         "field/trace/a.cpp": '#include "field/trace/cells/tile.h"\n',
         "field/program/g.cpp": '#include <vector>\n#include "field/math/vec3.h"\n',
         "renderer/geometry/h.cpp": '#include <embree3/rtcore.h>\n#include "renderer/scene/scene_description.h"\n',

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "field/base/id.h"
-#include "field/blend/alpha_sample.h"
-#include "field/blend/correction.h"
-#include "field/blend/directional_alpha.h"
+#include "field/blend/angle/alpha_sample.h"
+#include "field/blend/angle/directional_alpha.h"
+#include "field/blend/correction/correction.h"
 #include "field/blend/material_weights.h"
 #include "field/description/field_node.h"
 #include "field/math/box3.h"

@@ -1,7 +1,7 @@
 // Hessians put together, and curvature from gradient and Hessian.
 #include "field/blend/curvature.h"
 
-#include "field/blend/second_order_correction.h"
+#include "field/blend/correction/second_order_correction.h"
 #include "field/blend/second_order_gather.h"
 
 namespace marrow {

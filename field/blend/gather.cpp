@@ -181,10 +181,10 @@ std::optional<Neighbourhood> neighbourhood_at(const BlendField& blend, const Vec
   return is_usable(sum) ? std::optional(place) : std::nullopt;
 }
 
-AlphaSample alpha_of(const BlendField& blend, const Vec3d& p, const std::vector<SumBounds::Part>& parts) {
+AlphaSample alpha_of(const BlendField& blend, const Vec3d& p, const std::vector<PrimitiveBounds>& parts) {
   const auto each_primitive = [&](const auto& visit) {
     visit_parts(blend, parts,
-                [&](const SumBounds::Part& part, const auto& list, std::size_t i) { visit(part.sample, list, i); });
+                [&](const PrimitiveBounds& part, const auto& list, std::size_t i) { visit(part.sample, list, i); });
   };
   if (blend.alpha_per_skeleton) return per_skeleton(blend, p, each_primitive).alpha;
   return by_direction<Derivatives::First>(blend, p, each_primitive).alpha;

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "field/blend/angle/local_contact.h"
 #include "field/blend/blend_field.h"
-#include "field/blend/local_contact.h"
-#include "field/blend/sum_bounds.h"
+#include "field/blend/primitive_bounds.h"
 
 namespace marrow {
 
@@ -21,7 +21,7 @@ std::optional<Neighbourhood> neighbourhood_at(const BlendField&, const Vec3d& p)
 
 /// The angle of a blend that has `alpha_per_skeleton` or `direction_bounds`, from the samples of its parts at p. All
 /// segments of a strand by distance count that have a sample.
-AlphaSample alpha_of(const BlendField&, const Vec3d& p, const std::vector<SumBounds::Part>&);
+AlphaSample alpha_of(const BlendField&, const Vec3d& p, const std::vector<PrimitiveBounds>&);
 
 template <Derivatives>
 Gathered gather(const BlendField&, const Vec3d& p);

@@ -5,7 +5,7 @@
 #include <concepts>
 #include <vector>
 
-#include "field/blend/local_contact.h"
+#include "field/blend/angle/local_contact.h"
 #include "field/blend/primitive_visit.h"
 #include "field/math/elementary.h"
 

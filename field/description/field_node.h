@@ -138,7 +138,7 @@ struct AlphaFromField {
   FieldNodeId field;
   AlphaRamp ramp;
 };
-/// Contact, adapted to unequal radii and to how many skeletons meet (field/blend/local_contact.h).
+/// Contact, adapted to unequal radii and to how many skeletons meet (field/blend/angle/local_contact.h).
 struct AlphaLocalContact {
   bool radii = true, density = true;
 };

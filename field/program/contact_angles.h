@@ -5,8 +5,8 @@
 #include <memory>
 #include <tuple>
 
-#include "field/blend/contact.h"
-#include "field/blend/local_contact.h"
+#include "field/blend/angle/contact.h"
+#include "field/blend/angle/local_contact.h"
 #include "field/description/field_node.h"
 
 namespace marrow {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "field/blend/alpha_sample.h"
+#include "field/blend/angle/alpha_sample.h"
 #include "field/program/field_program.h"
 #include "field/skeleton/second_order.h"
 

@@ -13,7 +13,7 @@
 
 #include "field/base/overloaded.h"
 #include "field/base/result.h"
-#include "field/blend/local_contact.h"
+#include "field/blend/angle/local_contact.h"
 #include "field/kernel/inverse_family.h"
 #include "field/program/node_angles.h"
 #include "field/program/validate_node.h"

@@ -1,9 +1,9 @@
 // The corrected field of a blend over the types of number of general trees.
 #pragma once
 
-#include "field/blend/blend_bounds.h"
 #include "field/blend/blend_field.h"
-#include "field/blend/local_blend.h"
+#include "field/blend/bounds/blend_bounds.h"
+#include "field/blend/local/local_blend.h"
 #include "field/number/functions.h"
 #include "field/tree/straight_way.h"
 

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "field/blend/blend_bounds.h"
+#include "field/blend/bounds/blend_bounds.h"
 #include "field/tree/machine.h"
 
 namespace marrow {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "field/blend/sum_bounds.h"
+#include "field/blend/bounds/sum/sum_bounds.h"
 #include "field/number/jet.h"
 
 namespace marrow::tree {

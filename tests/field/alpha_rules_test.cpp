@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "field/blend/contact.h"
-#include "field/blend/directional_alpha.h"
-#include "field/blend/local_contact.h"
+#include "field/blend/angle/contact.h"
+#include "field/blend/angle/directional_alpha.h"
+#include "field/blend/angle/local_contact.h"
 #include "field/kernel/inverse_family.h"
 #include "field/program/field_program.h"
 #include "tests/field/random.h"

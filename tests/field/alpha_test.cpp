@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "field/blend/contact.h"
+#include "field/blend/angle/contact.h"
 #include "field/program/field_program.h"
 #include "tests/field/random.h"
 

@@ -1,5 +1,5 @@
 // Bounds over boxes against the field at points in them.
-#include "field/blend/blend_bounds.h"
+#include "field/blend/bounds/blend_bounds.h"
 
 #include <iostream>
 #include <numbers>

@@ -1,5 +1,5 @@
 // Laws of the correction operator of the Cauchy and the compact kernel.
-#include "field/blend/bounded_correction.h"
+#include "field/blend/correction/bounded_correction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include "field/blend/angle/contact.h"
 #include "field/blend/blend_field.h"
-#include "field/blend/contact.h"
-#include "field/blend/correction_bounds.h"
+#include "field/blend/bounds/correction/correction_bounds.h"
 #include "field/skeleton/skeletons.h"
 #include "tests/field/random.h"
 

@@ -1,6 +1,6 @@
 // Bounds of the partial derivatives of the operator of the Cauchy and the compact kernel hold those derivatives, and
 // come near them where intervals are short.
-#include "field/blend/bounded_partials.h"
+#include "field/blend/bounds/correction/bounded_partials.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "field/blend/curve_bounds.h"
+#include "field/blend/bounds/correction/curve_bounds.h"
 #include "tests/field/partials_check.h"
 #include "tests/field/random.h"
 

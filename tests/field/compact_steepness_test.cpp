@@ -1,5 +1,5 @@
 // The largest derivatives of the compact kernel against those at many places.
-#include "field/blend/compact_steepness.h"
+#include "field/blend/bounds/sum/compact_steepness.h"
 
 #include <algorithm>
 #include <cmath>

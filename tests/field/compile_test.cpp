@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "field/blend/contact.h"
+#include "field/blend/angle/contact.h"
 #include "field/program/field_program.h"
 #include "tests/field/random.h"
 

@@ -1,5 +1,5 @@
 // The published and the recomputed key angles (field-maths 6.1, 6.2).
-#include "field/blend/contact.h"
+#include "field/blend/angle/contact.h"
 
 #include <cmath>
 #include <numbers>

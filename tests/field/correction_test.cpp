@@ -1,5 +1,5 @@
 // Laws of the correction operator in the plane of f and G.
-#include "field/blend/correction.h"
+#include "field/blend/correction/correction.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "field/blend/angle/local_contact.h"
 #include "field/blend/blend_field.h"
-#include "field/blend/local_contact.h"
 #include "tests/field/random.h"
 
 namespace marrow {

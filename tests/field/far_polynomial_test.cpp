@@ -1,5 +1,5 @@
 // Polynomials stand for sources far away, to within what they state, and their bounds hold.
-#include "field/blend/far_polynomial.h"
+#include "field/blend/sources/far_polynomial.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "field/blend/far_expansion.h"
+#include "field/blend/local/far_expansion.h"
 #include "tests/field/random.h"
 
 namespace marrow {

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "field/blend/angle/contact.h"
 #include "field/blend/blend_field.h"
-#include "field/blend/contact.h"
 #include "field/kernel/inverse_family.h"
 #include "tests/field/random.h"
 

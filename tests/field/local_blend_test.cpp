@@ -1,5 +1,5 @@
 // A blend in a part of space is the blend, to within what is certified, and its bounds hold its values and slopes.
-#include "field/blend/local_blend.h"
+#include "field/blend/local/local_blend.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Bounds of means, and of angles that are means, against their derivatives at places all over the ball.
-#include "field/blend/mean_angles.h"
+#include "field/blend/bounds/angle/mean_angles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "field/blend/field_weight.h"
-#include "field/blend/mean_bounds.h"
+#include "field/blend/bounds/angle/field_weight.h"
+#include "field/blend/bounds/angle/mean_bounds.h"
 #include "field/number/functions.h"
 #include "tests/field/random.h"
 

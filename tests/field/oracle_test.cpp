@@ -10,8 +10,8 @@
 #include <boost/multiprecision/mpfr.hpp>
 #include <gtest/gtest.h>
 
-#include "field/blend/contact.h"
-#include "field/blend/correction.h"
+#include "field/blend/angle/contact.h"
+#include "field/blend/correction/correction.h"
 #include "field/skeleton/skeletons.h"
 #include "tests/field/oracle_operator.h"
 #include "tests/field/random.h"

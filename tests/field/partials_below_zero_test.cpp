@@ -1,6 +1,6 @@
 // Bounds of the operator and of its partial derivatives for angles below 0 hold them: where C is guarded, behind the
 // critical point, and between; and they come near them where intervals are short.
-#include "field/blend/partials_below_zero.h"
+#include "field/blend/bounds/correction/partials_below_zero.h"
 
 #include <algorithm>
 #include <cmath>

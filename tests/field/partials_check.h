@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "field/blend/correction_bounds.h"
+#include "field/blend/bounds/correction/correction_bounds.h"
 #include "tests/field/random.h"
 
 namespace marrow::test {

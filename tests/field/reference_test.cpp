@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "field/blend/blend_field.h"
-#include "field/blend/correction.h"
+#include "field/blend/correction/correction.h"
 #include "tests/field/random.h"
 
 namespace marrow {

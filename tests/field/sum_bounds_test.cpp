@@ -1,5 +1,5 @@
 // Bounds of sums and of their derivatives, each by itself, against exact sums at places of boxes and of stretches.
-#include "field/blend/sum_bounds.h"
+#include "field/blend/bounds/sum/sum_bounds.h"
 
 #include <algorithm>
 #include <functional>

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "field/blend/angle/local_contact.h"
 #include "field/blend/blend_field.h"
-#include "field/blend/local_contact.h"
 #include "field/skeleton/second_order.h"
 #include "tests/field/random.h"
 

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "field/blend/alpha_bounds.h"
-#include "field/blend/blend_bounds.h"
-#include "field/blend/local_contact.h"
+#include "field/blend/angle/local_contact.h"
+#include "field/blend/bounds/angle/alpha_bounds.h"
+#include "field/blend/bounds/blend_bounds.h"
 #include "tests/field/random.h"
 
 namespace marrow {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "field/blend/correction.h"
+#include "field/blend/correction/correction.h"
 
 namespace marrow::test {
 

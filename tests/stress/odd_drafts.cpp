@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "field/blend/contact.h"
+#include "field/blend/angle/contact.h"
 #include "field/math/elementary.h"
 #include "tests/stress/drawing.h"
 #include "tests/trace/random_scene.h"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "field/blend/contact.h"
+#include "field/blend/angle/contact.h"
 #include "tests/stress/drawing.h"
 #include "tests/stress/odd_drafts.h"
 #include "tests/trace/random_scene.h"

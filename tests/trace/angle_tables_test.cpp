@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "field/blend/correction.h"
+#include "field/blend/correction/correction.h"
 #include "field/trace/curve/turned_curve.h"
 #include "tests/trace/random_scene.h"
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "field/blend/contact.h"
+#include "field/blend/angle/contact.h"
 #include "tests/trace/all_cells.h"
 #include "tests/trace/first_of_tiles.h"
 #include "tests/trace/stage.h"

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "field/blend/contact.h"
+#include "field/blend/angle/contact.h"
 #include "tests/field/random.h"
 
 namespace marrow::test {

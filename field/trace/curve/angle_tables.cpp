@@ -10,7 +10,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include "field/blend/correction.h"
+#include "field/blend/correction/correction.h"
 #include "field/trace/curve/turned_curve.h"
 
 namespace marrow {

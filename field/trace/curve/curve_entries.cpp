@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "field/blend/correction.h"
+#include "field/blend/correction/correction.h"
 
 namespace marrow {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "field/blend/correction.h"
+#include "field/blend/correction/correction.h"
 
 namespace marrow {
 namespace {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include "field/blend/correction.h"
+#include "field/blend/correction/correction.h"
 #include "field/math/elementary.h"
 
 namespace marrow {

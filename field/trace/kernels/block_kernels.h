@@ -12,7 +12,7 @@
 #include <limits>
 #include <string_view>
 
-#include "field/blend/least_direction.h"
+#include "field/blend/angle/least_direction.h"
 #include "field/math/lane_set.h"
 #include "field/trace/kernels/block_view.h"
 #include "field/trace/kernels/cube_remainder.h"

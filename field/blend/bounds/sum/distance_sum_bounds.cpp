@@ -1,0 +1,234 @@
+// What primitives by distance may change by: they are k(e) of the least scaled distance e, which moves by as much as
+// the place does over the radius.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "field/blend/bounds/sum/steepest_slope.h"
+#include "field/blend/bounds/sum/sum_bounds.h"
+#include "field/math/elementary.h"
+#include "field/skeleton/distance.h"
+#include "field/skeleton/radii.h"
+#include "field/skeleton/skeletons.h"
+
+namespace marrow {
+namespace {
+
+constexpr double inf = Box3::inf;
+
+// How far the unit vector from the nearest point of the skeleton turns over rho: level surfaces of e are those of
+// convex bodies, flat, round or conical. Seen from the apex of a cone of the slope k, at the angle theta from its axis,
+// k e = sin theta and the distance is tan theta times that from the apex, so that the vector turns by tan theta over
+// the distance at most. From k e = 1 on the larger end is nearest. Of triangles of several radii and of arcs, whose
+// nearest point may jump, slopes tell it.
+double turn(const SegmentSkeleton& s, double distance, double rho, const Interval& e) {
+  const double slope = std::fabs(s.radius_to - s.radius_from) / length(s.to - s.from),
+               round = 2 * rho / (distance - rho);
+  if (slope * e.lo > 1) return round;
+  return slope * e.hi < 1 ? round / std::sqrt(1 - square(slope * e.hi)) : inf;
+}
+bool is_even(const TriangleSkeleton& s) { return s.radii[0] == s.radii[1] && s.radii[1] == s.radii[2]; }
+bool is_even(const ArcSkeleton&) { return false; }
+double turn(const TriangleSkeleton& s, double distance, double rho, const Interval&) {
+  return is_even(s) ? 2 * rho / (distance - rho) : inf;
+}
+double turn(const ArcSkeleton&, double, double, const Interval&) { return inf; }
+
+// Also of numbers that root() does not take.
+double any_root(double x, int degree) { return x > 1e-300 && x < 1e300 ? root(x, degree) : pow(x, 1.0 / degree); }
+
+// The scaled distance e where it is off by `moved` at most from where the field is f. The compact kernel tells of it
+// within its support only.
+Interval scaled_near(const Kernel& kernel, double f, double moved) {
+  if (kernel.family == KernelFamily::Inverse) {
+    const double e = std::isfinite(f) ? 1 / any_root(f, kernel.degree - 1) : 0, by = moved + 1e-10 * e;
+    return {e - by, e + by};
+  }
+  const Profile profile(kernel, 0);
+  const int m = profile.degree();
+  const bool is_compact = kernel.family == KernelFamily::Compact;
+  const double size = is_compact ? kernel.shape : 1 / kernel.shape;
+  // (e / size)^2 from k; a relative 1e-9 of it or of 1 stands for the error of the sample.
+  const double ratio = std::min(1.0, f * profile.normalisation());
+  const double power = square(any_root(ratio, m)), y = is_compact ? 1 - power : 1 / power - 1;
+  return {std::max(0.0, size * std::sqrt(std::max(0.0, y - 1e-9 * (1 + y))) - moved),
+          f > 0 ? size * std::sqrt(y + 1e-9 * (1 + y)) + moved : inf};
+}
+
+// |k'| between two scaled distances: it rises to the steepest place of the kernel and falls from there on, to 0 at the
+// edge of a support.
+Interval steepness_between(const Profile& profile, const Kernel& kernel, const Interval& e) {
+  const int m = profile.degree();
+  const bool is_compact = kernel.family == KernelFamily::Compact;
+  const double size = is_compact ? kernel.shape : 1 / kernel.shape;
+  const auto slope = [&](double x) {
+    if (!(is_compact ? x < size : x < inf)) return 0.0;
+    return std::fabs(2 * x * profile.at(x * x).slope) / profile.normalisation();
+  };
+  const double top = size / std::sqrt(is_compact ? m - 1.0 : m + 1.0), a = slope(e.lo), b = slope(e.hi);
+  const bool has_top = e.lo * (1 - 1e-9) <= top && top <= e.hi * (1 + 1e-9);
+  const double most = has_top ? steepest(profile, kernel) : std::max(a, b);
+  return {std::min(a, b) * (1 - 1e-9), most * (1 + 1e-9)};
+}
+
+double largest_size(const Vec3<Interval>& v) {
+  return std::sqrt(square(abs(v.x).hi) + square(abs(v.y).hi) + square(abs(v.z).hi)) * (1 + 1e-15);
+}
+
+// What slopes tell of f and S, if it is less: they change from the middle by the steepest slope times rho at most.
+void narrow(SumBounds::Between& b, const SkeletonSample& middle, const PrimitiveSlopes& slopes, double rho) {
+  const double f_by = rho * largest_size(slopes.gradient) * (1 + 1e-9) + 1e-10 * middle.value;
+  b.f = {std::max(b.f.lo, middle.value - f_by), std::min(b.f.hi, middle.value + f_by)};
+  const double turns = std::sqrt(square(largest_size(slopes.J[0])) + square(largest_size(slopes.J[1])) +
+                                 square(largest_size(slopes.J[2])));
+  const double S_by = rho * turns * (1 + 1e-9) + 1e-10 * length(middle.si_gradient);
+  if (!(S_by < b.S_by)) return;
+  b.S = middle.si_gradient;
+  b.S_by = S_by;
+}
+
+// e = min d / radius changes by rho / radius at most, f = k(e), |S| = |k'(e)|. `middle`: of the middle.
+template <class Skeleton>
+SumBounds::Between distance_bounds(const Skeleton& s, const SkeletonSample& middle, const SumBounds& sum,
+                                   const Kernel& kernel) {
+  const double distance = distance_to(s, sum.center());
+  if (kernel.family == KernelFamily::Compact && distance > (sum.rho() + kernel.shape * largest_radius(s)) * (1 + 1e-9))
+    return {.f = 0, .log_slope = 0};  // its support is elsewhere
+  const double f = middle.value, moved = sum.rho() / least_radius(s);
+  const Interval e = scaled_near(kernel, f, moved);
+  const double turned = distance > sum.rho() ? turn(s, distance, sum.rho(), e) : inf;
+  // S between its least and largest length, turned by as much.
+  const auto give_S = [&](SumBounds::Between& b, double S_low, double S_high) {
+    b.S_by = S_high;
+    if (!(turned < 1 && length(middle.si_gradient) > 0)) return;
+    b.S = normalize(middle.si_gradient) * (0.5 * (S_low + S_high));
+    b.S_by = (0.5 * (S_high - S_low) + S_high * turned) * (1 + 1e-9);
+  };
+  if (kernel.family != KernelFamily::Inverse) {
+    const Profile profile(kernel, 0);
+    const Interval lengths = steepness_between(profile, kernel, e);
+    const double by = lengths.hi * moved * (1 + 1e-9) + 1e-10 * f;
+    SumBounds::Between b{.f = {std::max(0.0, f - by), f + by},
+                         .log_slope = f > by ? lengths.hi / (least_radius(s) * (f - by)) * (1 + 1e-9) : inf};
+    give_S(b, lengths.lo, lengths.hi);
+    return b;
+  }
+  const int n = kernel.degree;
+  const auto [near, far] = e;
+  if (!(near > 0)) return {.f = {(1 - 1e-10) / integer_power(far, n - 1), inf}, .S_by = inf, .log_slope = inf};
+  const double S_high = (n - 1) * (1 + 1e-10) / integer_power(near, n);
+  SumBounds::Between b{.f = {(1 - 1e-10) / integer_power(far, n - 1), (1 + 1e-10) / integer_power(near, n - 1)},
+                       .S_by = S_high,
+                       .log_slope = (n - 1) * (1 + 1e-10) / (near * least_radius(s))};
+  give_S(b, (n - 1) * (1 - 1e-10) / integer_power(far, n), S_high);
+  return b;
+}
+
+double speed_of_place(const ArcSkeleton& s, const Box3& box) { return place_speed(s, box); }
+double speed_of_place(const auto&, const Box3&) { return inf; }  // mean_angles.cpp tells it
+
+// The same for means, which ask for |grad f| = |S| / radius.
+template <class Skeleton>
+SumBounds::Part distance_part(const Skeleton& s, const SkeletonSample& middle, const SumBounds::Between& b,
+                              const SumBounds& sum, const Kernel& kernel) {
+  if (b.f.hi == 0) return {.steepest = 0, .bent = 0};
+  const double longest = length(b.S) + b.S_by, least = least_radius(s);
+  return {.sample = middle,
+          .f = b.f,
+          .steepest = longest / least * (1 + 1e-9),
+          .scaled = scaled_near(kernel, middle.value, sum.rho() / least),
+          .place_speed = speed_of_place(s, sum.box())};
+}
+
+// The skeletons of one strand of which the largest field counts; where several may be that, S is one of theirs.
+struct Largest {
+  SumBounds::Between bounds;
+  std::array<std::size_t, 3> candidates{};
+  std::size_t count = 1;  // one more than candidates has room for: not known which
+
+  Largest(const SumBounds::Between& first, std::size_t index) : bounds(first), candidates{index} {}
+
+  void add(const SumBounds::Between& other, std::size_t index) {
+    if (other.f.hi < bounds.f.lo || other.f.hi == 0) return;
+    if (bounds.f.hi < other.f.lo || bounds.f.hi == 0) {
+      *this = {other, index};
+      return;
+    }
+    bounds = {.f = max(bounds.f, other.f),
+              .S = (bounds.S + other.S) * 0.5,
+              .S_by = 0.5 * length(bounds.S - other.S) + std::max(bounds.S_by, other.S_by) * (1 + 1e-15),
+              .log_slope = std::max(bounds.log_slope, other.log_slope)};
+    if (count < candidates.size()) candidates[count] = index;
+    count = std::min(count + 1, candidates.size() + 1);
+  }
+
+  // From one to the other S may jump, unless all of them see the same end.
+  std::optional<PrimitiveSlopes> slopes(const auto& skeletons, const Box3& box, const Kernel& kernel) const {
+    if (bounds.f.hi == 0) return PrimitiveSlopes{};
+    if (count > candidates.size()) return {};
+    const auto first = distance_slopes(skeletons[candidates[0]], box, kernel);
+    for (std::size_t i = 1; i < count && first; ++i)
+      if (distance_slopes(skeletons[candidates[i]], box, kernel) != first) return {};
+    return first;
+  }
+};
+
+}  // namespace
+
+// Of a strand only what may be the largest counts.
+void SumBounds::keep_strand(const BlendField& blend, std::size_t first, std::span<const Between> strand) {
+  const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+  double largest = 0;
+  for (const Between& b : strand) largest = std::max(largest, b.f.lo);
+  std::vector<std::size_t> candidates;
+  for (std::size_t i = 0; i < strand.size(); ++i) {
+    if (strand[i].f.hi < largest || strand[i].f.hi == 0) {
+      keep({.steepest = 0, .bent = 0});
+      continue;
+    }
+    candidates.push_back(parts_.size());
+    const SegmentSkeleton& s = blend.distance_segments.skeletons[first + i];
+    keep(distance_part(s, distance_field<Derivatives::First>(s, center_, kernel), strand[i], *this, kernel));
+  }
+  if (candidates.size() > 1) takeovers_.push_back(std::move(candidates));
+}
+
+void SumBounds::add_distances(const BlendField& blend) {
+  const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+  const auto& list = blend.distance_segments;
+  std::vector<Between> strand;
+  const auto bounds_of = [&](const SegmentSkeleton& s) {
+    return distance_bounds(s, distance_field<Derivatives::ScaleInvariant>(s, center_, kernel), *this, kernel);
+  };
+  for (std::size_t first = 0; first < list.size(); first += strand.size()) {
+    strand = {bounds_of(list.skeletons[first])};
+    Largest all(strand.front(), first);
+    for (std::size_t i = first + 1; !list.strands.empty() && i < list.size() && list.strands[i] == list.strands[first];
+         ++i) {
+      strand.push_back(bounds_of(list.skeletons[i]));
+      all.add(strand.back(), i);
+    }
+    if (keeps_parts_) keep_strand(blend, first, strand);
+    if (has_slopes()) all.bounds.slopes = all.slopes(list.skeletons, box_, kernel);
+    add(all.bounds);
+  }
+  const auto add_one = [&](const auto& s) {
+    const SkeletonSample middle = distance_field<Derivatives::First>(s, center_, kernel);
+    Between bounds = distance_bounds(s, middle, *this, kernel);
+    std::optional<PrimitiveSlopes> slopes;
+    if (bounds.f.hi == 0) slopes = PrimitiveSlopes{};
+    else if (has_slopes() || !is_even(s)) slopes = distance_slopes(s, box_, kernel);
+    if (slopes && bounds.f.hi > 0 && !is_even(s)) narrow(bounds, middle, *slopes, rho_);
+    if (keeps_parts_) keep(distance_part(s, middle, bounds, *this, kernel));
+    if (has_slopes()) bounds.slopes = slopes;
+    add(bounds);
+  };
+  for (const auto& s : blend.distance_triangles.skeletons) add_one(s);
+  for (const auto& s : blend.distance_arcs.skeletons) add_one(s);
+}
+
+}  // namespace marrow

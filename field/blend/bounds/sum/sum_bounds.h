@@ -1,0 +1,126 @@
+// Bounds of the sums f and S = grad_S f of a blend and of their derivatives over a small box.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "field/blend/blend_field.h"
+#include "field/blend/bounds/sum/distance_slopes.h"
+#include "field/blend/primitive_bounds.h"
+#include "field/blend/sources/far_polynomial.h"
+#include "field/blend/sources/source_sums.h"
+#include "field/math/box3.h"
+#include "field/number/interval.h"
+
+namespace marrow {
+
+/// A straight way through a box, from its middle to either end, as rays take it; lengths as those of the box.
+struct Stretch {
+  Vec3d half;       ///< from the middle to one end; the other lies as far on the other side
+  Vec3d direction;  ///< parallel to `half`: what slopes along it are for
+  double slack;     ///< by which its places may lie off, as they are rounded
+};
+
+/// What is asked for: slopes of primitives by distance cost more than all else.
+enum class Wanted { Value, Slopes };
+
+/// Sums over primitives of an exact sample in the middle of the box and of what it may change by on the way to any
+/// point of the box, which follows from the least distance of each primitive.
+class SumBounds {
+ public:
+  /// Relative error of the closed forms, with a margin of ten.   [field-maths 3.3: 1.2e-13; triangles 2.6e-12]
+  static constexpr double sample_error = 3e-11;
+  /// Relative error of integrals under the compact kernel, over what they could be at most.
+  static constexpr double compact_error = 1e-10;
+
+  explicit SumBounds(const Box3&, const Stretch* = nullptr);
+  /// Of places in the box, or only of those on a stretch through it.
+  SumBounds(const BlendField&, const Box3&, Wanted = Wanted::Slopes, const Stretch* = nullptr);
+
+  /// A primitive that is a positive sum of |p - q|^-m with all q at least `distance` away from the middle and radii up
+  /// to `radius`. Its k-th derivatives are at most m (m+1) ... (m+k-1) / distance^k times itself, and within rho of the
+  /// middle all distances shrink by 1 - rho / distance at most.   [tracing 3.1]
+  void add(const SkeletonSample&, double distance, double radius, int m);
+  /// A primitive of which only bounds are known.
+  struct Between {
+    Interval f;
+    Vec3d S{};         ///< its scale-invariant gradient is this
+    double S_by = 0;   ///< up to a vector of this length
+    double log_slope;  ///< of |grad ln f|
+    std::optional<PrimitiveSlopes> slopes{};
+  };
+  void add(const Between&);
+  /// A primitive of which the largest first and second derivatives anywhere are known, up to a radius; and how far
+  /// places are from the middle across it, where along it only its ends tell anything.
+  struct Smooth {
+    double steepest, most_bent, radius;
+    double across;
+    double J_changes;                          ///< by which J may differ between the middle and any place as far across
+    double S_beyond_J;                         ///< and S there from what J in the middle tells
+    double ends_bent = 0, ends_J_changes = 0;  ///< what ends add to its second derivatives, and to J over a length
+  };
+  void add(const SkeletonSample&, const Smooth&);
+  /// Sources: the same from one remainder for all of them.
+  void add(const SourceSums&);
+  /// The box lies in its ball.
+  void add(const FarPolynomial&);
+
+  /// What is known of one primitive in the ball of `rho` around the middle.
+  using Part = PrimitiveBounds;
+  /// All primitives of a blend whose angle is a mean over its skeletons or strands, in the order of visit_parts().
+  const std::vector<Part>& parts() const { return parts_; }
+  /// The parts of each strand by distance of which more than one segment may be the largest: where one takes over from
+  /// another, angles and directions jump.
+  const std::vector<std::vector<std::size_t>>& takeovers() const { return takeovers_; }
+
+  const Box3& box() const { return box_; }
+  const Vec3d& center() const { return center_; }
+  /// Half the diagonal of the box.
+  double rho() const { return rho_; }
+  /// A skeleton is so near that f has no upper bound.
+  bool unbounded() const { return unbounded_; }
+  Interval f() const;
+  /// Whether gradient() and J() are bounded.
+  bool has_slopes() const { return has_slopes_ && !unbounded_; }
+  Vec3<Interval> gradient() const;
+  Vec3<Interval> S() const;
+  /// d S_i / d p_j
+  Interval J(std::size_t i, std::size_t j) const;
+  /// The stretch, if it is all that is asked for; then slopes of f and of S_i along its direction.
+  const Stretch* stretch() const { return stretch_ ? &*stretch_ : nullptr; }
+  Interval f_along() const;
+  Interval S_along(std::size_t i) const;
+  /// Largest |grad ln f_i| of any primitive anywhere in the box.
+  double log_slope() const { return log_slope_; }
+
+ private:
+  void keep(const Part& part) {
+    if (keeps_parts_) parts_.push_back(part);
+  }
+  Interval side(std::size_t i) const;
+  Interval way(const Vec3d& slope) const;
+  template <class Skeleton, class Sample>
+  void add_integral(const BlendField&, const Skeleton&, double distance, int m, const Sample&);
+  void add_inverse(const BlendField&);
+  void add_cani_hornus(const BlendField&);
+  void add_cauchy(const BlendField&);
+  void add_compact(const BlendField&);
+  void add_distances(const BlendField&);
+  void keep_strand(const BlendField&, std::size_t first, std::span<const Between>);
+
+  Box3 box_;
+  std::optional<Stretch> stretch_;
+  Vec3d center_;
+  double rho_;
+  double f_ = 0, low_ = 0, error_ = 0, slope_error_ = 0, S_error_ = 0, second_ = 0, S_second_ = 0, log_slope_ = 0;
+  double J_error_ = 0;
+  Vec3d gradient_{}, S_{};
+  Matrix3 J_{};
+  PrimitiveSlopes between_{};
+  bool unbounded_ = false, has_slopes_ = true, keeps_parts_ = false;
+  std::vector<Part> parts_;
+  std::vector<std::vector<std::size_t>> takeovers_;
+};
+
+}  // namespace marrow
