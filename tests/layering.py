@@ -11,6 +11,8 @@ import tempfile
 
 BELOW_BLEND = ["field/base", "field/math", "field/number", "field/description", "field/kernel", "field/skeleton"]
 BELOW_TRACE = BELOW_BLEND + ["field/blend", "field/tree", "field/program"]
+BELOW_APP = ["field", "materials", "renderer/output", "renderer/slice", "renderer/scene", "renderer/geometry",
+             "renderer/transport", "renderer/bench"]
 
 # A folder may include the folders named here and itself, with all in it that may not include the folder. A trailing file
 # name opens that file only.
@@ -55,7 +57,15 @@ ARROWS = {
     "renderer/transport": ["field/base", "field/math", "materials", "renderer/scene/scene_description.h",
                            "renderer/geometry/surfaces.h", "renderer/output"],
     "renderer/bench": ["field", "renderer/scene", "renderer/geometry", "renderer/transport"],
-    "renderer/app": ["field", "materials", "renderer"],
+    "renderer/app/text": BELOW_APP,
+    "renderer/app/command_line": BELOW_APP + ["renderer/app/text"],
+    "renderer/app/machine": BELOW_APP + ["renderer/app/command_line"],
+    "renderer/app/report": BELOW_APP + ["renderer/app/text", "renderer/app/command_line"],
+    "renderer/app/input": BELOW_APP + ["renderer/app/text", "renderer/app/command_line"],
+    "renderer/app/picture": BELOW_APP + ["renderer/app/command_line", "renderer/app/report", "renderer/app/input"],
+    "renderer/app/commands": BELOW_APP + ["renderer/app/text", "renderer/app/command_line", "renderer/app/machine",
+                                          "renderer/app/report", "renderer/app/input", "renderer/app/picture"],
+    "renderer/app": BELOW_APP,
     "tests": ["field", "materials", "renderer"],
 }
 
@@ -70,7 +80,7 @@ LIBRARIES = {
     r"cairo": ["renderer/slice/", "renderer/output/"],
     r"yaml-cpp/": ["renderer/scene/"],
     r"nlohmann/": ["renderer/scene/", "renderer/app/", "tests/"],
-    r"CLI/": ["renderer/app/options.cpp"],
+    r"CLI/": ["renderer/app/command_line/options.cpp"],
     r"xxhash": ["renderer/scene/"],
     r"sleef": ["field/math/"],
     r"fmt/": ["field/", "materials/", "renderer/", "tests/"],
@@ -134,6 +144,7 @@ def self_test():
         "materials/c.h": '#include "field/blend/correction/correction.h"\n',
         "renderer/output/d.h": "#include <OpenEXR/ImfHeader.h>\n",
         "renderer/app/e.cpp": "#include <embree3/rtcore.h>\n",
+        "renderer/app/input/f.h": '#include "renderer/app/picture/finish_render.h"\n',
         "field/unknown/f.h": "",
     }
     right = {
@@ -142,7 +153,8 @@ def self_test():
         "field/trace/a.cpp": '#include "field/trace/cells/tile.h"\n',
         "field/program/g.cpp": '#include <vector>\n#include "field/math/vec3.h"\n',
         "renderer/geometry/h.cpp": '#include <embree3/rtcore.h>\n#include "renderer/scene/scene_description.h"\n',
-        "tests/field/i.cpp": '#include <gtest/gtest.h>\n#include "renderer/app/options.h"\n',
+        "renderer/app/main.cpp": '#include "renderer/app/command_line/options.h"\n',
+        "tests/field/i.cpp": '#include <gtest/gtest.h>\n#include "renderer/app/command_line/options.h"\n',
     }
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder)

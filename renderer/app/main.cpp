@@ -4,9 +4,9 @@
 #include <new>
 #include <variant>
 
-#include "renderer/app/commands.h"
-#include "renderer/app/options.h"
-#include "renderer/app/report.h"
+#include "renderer/app/command_line/commands.h"
+#include "renderer/app/command_line/options.h"
+#include "renderer/app/report/report.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // What has no answer is said to have none, to people and to programs.
-#include "renderer/app/bench_report.h"
+#include "renderer/app/report/bench_report.h"
 
 #include <string>
 

@@ -1,5 +1,5 @@
 // A crop names a part of the film that exists.
-#include "renderer/app/crop.h"
+#include "renderer/app/command_line/crop.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Names of outputs follow from what was asked.
-#include "renderer/app/picture_outputs.h"
+#include "renderer/app/picture/picture_outputs.h"
 
 #include <gtest/gtest.h>
 

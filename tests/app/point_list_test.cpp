@@ -1,5 +1,5 @@
 // Points are read without loss; bad lines are all told.
-#include "renderer/app/point_list.h"
+#include "renderer/app/input/point_list.h"
 
 #include <random>
 #include <sstream>

@@ -1,5 +1,5 @@
 // What a terminal shows while a picture is made.
-#include "renderer/app/progress_line.h"
+#include "renderer/app/report/progress_line.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // Rays are read as they are written, and lengths are those of their directions.
-#include "renderer/app/ray_list.h"
+#include "renderer/app/input/ray_list.h"
 
 #include <sstream>
 

@@ -1,5 +1,5 @@
 // Numbers and durations: what is read is what was meant, and nothing else is read.
-#include "renderer/app/text.h"
+#include "renderer/app/text/text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,123 @@
+// marrow probe: a field at given points, in numbers that can be read back without loss.
+#include <fstream>
+#include <iostream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "field/blend/curvature.h"
+#include "field/skeleton/second_order.h"
+#include "renderer/app/command_line/commands.h"
+#include "renderer/app/command_line/files.h"
+#include "renderer/app/input/point_list.h"
+#include "renderer/app/input/scene_input.h"
+#include "renderer/app/report/report.h"
+#include "renderer/app/text/json_values.h"
+#include "renderer/app/text/print.h"
+
+namespace marrow {
+namespace {
+
+std::string sample_of_field(const FieldProgram& program, const Vec3d& p) {
+  const FieldSample s = evaluate(program, p);
+  return fmt::format(R"("point": {}, "value": {}, "gradient": {}, "iso": {}, "inside": {})", json(p), json(s.value),
+                     json(s.gradient), json(FieldProgram::iso()), s.value > FieldProgram::iso());
+}
+
+std::string sample_of_blend(const PlacedBlend& part, const Vec3d& p) {
+  const BlendSample s = evaluate_part(part, p);
+  return fmt::format(
+      R"(, "sum": {}, "sum_gradient": {}, "si_gradient": {}, "si_norm": {}, "alpha": {}, "corrected": {}, )"
+      R"("corrected_gradient": {})",
+      json(s.sum), json(s.sum_gradient), json(s.si_gradient), json(s.si_norm), json(s.alpha), json(s.corrected),
+      json(s.corrected_gradient));
+}
+
+// A Hessian in world coordinates: L^T H L, L the map to the blend's own.
+Matrix3 in_world(const PlacedBlend& part, const Matrix3& hessian) {
+  Matrix3 columns;
+  for (std::size_t k = 0; k < 3; ++k)
+    columns.rows[k] = part.local_from_world.transposed(hessian.times(part.local_from_world.columns[k]));
+  return columns;  // symmetric, so that its columns are its rows
+}
+
+std::string hessian_of_sum(const PlacedBlend& part, const Vec3d& p) {
+  const Vec3d local = part.is_in_world() ? p : part.local_from_world.point(p);
+  const Matrix3 sum = in_world(part, sum_hessian(part.blend, local));
+  return fmt::format(R"(, "sum_hessian": [{}, {}, {}])", json(sum.rows[0]), json(sum.rows[1]), json(sum.rows[2]));
+}
+
+std::string curvature_of_field(const FieldProgram& program, const Vec3d& p) {
+  const HessianJet f = second_order_value(program, variables_at(p));
+  const auto& c = f.curvature;
+  const Matrix3 hessian{{Vec3d{c[0], c[5], c[4]}, Vec3d{c[5], c[1], c[3]}, Vec3d{c[4], c[3], c[2]}}};
+  const Curvature curvature = curvature_of({f.slope[0], f.slope[1], f.slope[2]}, hessian);
+  return fmt::format(R"(, "hessian": [{}, {}, {}], "mean_curvature": {}, "gaussian_curvature": {})",
+                     json(hessian.rows[0]), json(hessian.rows[1]), json(hessian.rows[2]), json(curvature.mean),
+                     json(curvature.gaussian));
+}
+
+// What has no material of its own has that of the object.
+std::string materials_of_field(const FieldObject& field, const SceneDescription& scene, const Vec3d& p) {
+  MaterialWeights weights;
+  for (const MaterialWeight& w : material_weights(field.program, p))
+    add_weight(weights, w.material.valid() ? w.material : scene.objects[field.object.index()].material, w.weight);
+  nlohmann::ordered_json names = nlohmann::ordered_json::object();
+  for (const MaterialWeight& w : weights) names[scene.materials[w.material.index()].name] = w.weight;
+  return fmt::format(R"(, "materials": {})", names.dump());
+}
+
+void print_samples(const FieldObject& field, const SceneDescription& scene, const std::vector<Vec3d>& points,
+                   const ProbeCommand& command) {
+  const FieldProgram& program = field.program;
+  const bool blend = is_single_blend(program);
+  std::string_view separator = "[\n";
+  for (const Vec3d& p : points) {
+    std::string sample = sample_of_field(program, p);
+    if (blend) sample += sample_of_blend(program.parts()[0], p);
+    if (blend && command.curvature) sample += hessian_of_sum(program.parts()[0], p);
+    if (command.curvature) sample += curvature_of_field(program, p);
+    if (command.materials) sample += materials_of_field(field, scene, p);
+    say(fmt::format("{}{{{}}}", separator, sample));
+    separator = ",\n";
+  }
+  say(fmt::format("{}]\n", points.empty() ? "[" : "\n"));
+}
+
+Diagnostic several_fields(const std::vector<const FieldObject*>& fields, const SceneDescription& scene) {
+  constexpr std::size_t most = 24;
+  std::vector<std::string_view> names;
+  for (const FieldObject* field : fields)
+    if (names.size() < most) names.push_back(scene.objects[field->object.index()].name);
+  return with_hint(failure("the scene has several fields; choose one by --object"),
+                   fmt::format("there are {}{}", fmt::join(names, ", "), fields.size() > most ? ", …" : ""));
+}
+
+Result<std::vector<Vec3d>> points_of(const std::filesystem::path& path, SourceCache& sources) {
+  if (path == "-") return read_points(std::cin, "<stdin>", sources);
+  std::ifstream file(path);
+  return read_points(file, path.string(), sources);
+}
+
+}  // namespace
+
+ExitCode run(const ProbeCommand& command) {
+  ReadRecord record;
+  const auto scene = load(command.scene, record);
+  if (!scene) return report(scene.why(), record.sources, exit_code_of_failed_load(command.scene));
+  report(record.warnings, record.sources, ExitCode::Ok);
+  const auto fields = select_fields(*scene, command.object);
+  if (!fields) return report(fields.why(), ExitCode::Usage);
+  if (fields->size() > 1) return report({several_fields(*fields, scene->description)}, ExitCode::Usage);
+
+  if (command.points != "-") {
+    if (const auto status = check_readable(command.points); !status) return report(status.why(), ExitCode::NoInput);
+  }
+  SourceCache sources;
+  const auto points = points_of(command.points, sources);
+  if (!points) return report(points.why(), sources, ExitCode::BadInput);
+  print_samples(*fields->front(), scene->description, *points, command);
+  return ExitCode::Ok;
+}
+
+}  // namespace marrow

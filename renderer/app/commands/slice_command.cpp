@@ -1,0 +1,73 @@
+// marrow slice: a field on an axis plane, in false colour or as raw numbers.
+#include <algorithm>
+
+#include "renderer/app/command_line/commands.h"
+#include "renderer/app/command_line/files.h"
+#include "renderer/app/input/scene_input.h"
+#include "renderer/app/machine/interrupt.h"
+#include "renderer/app/report/report.h"
+#include "renderer/app/text/print.h"
+#include "renderer/output/exr.h"
+#include "renderer/output/image_file.h"
+#include "renderer/slice/slice.h"
+
+namespace marrow {
+namespace {
+
+// Of several objects the largest value: what is inside any of them is inside.
+FieldFunction largest_of(std::vector<const FieldObject*> fields) {
+  return [fields = std::move(fields)](const Vec3d& p) {
+    FieldSample best = evaluate(fields.front()->program, p);
+    for (std::size_t i = 1; i < fields.size(); ++i) {
+      const FieldSample sample = evaluate(fields[i]->program, p);
+      if (sample.value > best.value) best = sample;
+    }
+    return SliceSample{best.value, best.gradient};
+  };
+}
+
+Box3 extent_of(const std::vector<const FieldObject*>& fields) {
+  Box3 box;
+  for (const auto* field : fields) box.include(extent(field->program));
+  return box;
+}
+
+Status write(const SliceImage& image, const SliceCommand& command, const SceneDescription& scene) {
+  if (command.output.extension() == ".exr") {
+    Picture picture = to_exr_picture(image);
+    picture.metadata.push_back({"marrow/sceneHash", scene.hash});
+    return write_exr(command.output, picture);
+  }
+  SliceStyle style;
+  style.range = command.request.range;
+  style.colormap = command.request.colormap;
+  style.units = scene.units;
+  const auto painted = paint(image, style);
+  if (!painted) return painted.why();
+  return write_png(command.output, *painted, PngDepth::Bits8, {{"marrow/sceneHash", scene.hash}});
+}
+
+}  // namespace
+
+ExitCode run(const SliceCommand& command) {
+  const auto ending = command.output.extension();
+  if (ending != ".exr" && ending != ".png")
+    return report({failure("the output must end in .exr or .png", command.output.string())}, ExitCode::Usage);
+  ReadRecord record;
+  const auto scene = load(command.scene, record);
+  if (!scene) return report(scene.why(), record.sources, exit_code_of_failed_load(command.scene));
+  report(record.warnings, record.sources, ExitCode::Ok);
+  const auto fields = select_fields(*scene, command.object);
+  if (!fields) return report(fields.why(), ExitCode::Usage);
+  if (const auto status = check_writable(command.output); !status) return report(status.why(), ExitCode::CannotCreate);
+
+  SliceRequest request = command.request;
+  request.interrupted = &interruption_flag();
+  const auto image = slice(largest_of(*fields), FieldProgram::iso(), extent_of(*fields), request);
+  if (!image) return report(image.why(), ExitCode::Usage);
+  if (interruption_flag()) return complain("interrupted; nothing was written\n"), ExitCode::Interrupted;
+  const auto written = write(*image, command, scene->description);
+  return written ? ExitCode::Ok : report(written.why(), ExitCode::WriteFailed);
+}
+
+}  // namespace marrow
