@@ -10,6 +10,7 @@
 #include "field/skeleton/arc_view.h"
 #include "field/skeleton/corners.h"
 #include "field/skeleton/nearest_place.h"
+#include "field/skeleton/segment_place.h"
 #include "field/skeleton/skeletons.h"
 
 namespace marrow {
@@ -59,29 +60,20 @@ void let_move(Nearest& q, const Vec3d& first, const Vec3d& second, double radius
 
 Nearest nearer(const Nearest& a, const Nearest& b) { return b.scaled_squared() < a.scaled_squared() ? b : a; }
 
-// With the foot at tau_f and height h, e is stationary at sigma h^2 / tau_f beyond the foot, a minimum for tau_f > 0.
-//                                                                                          [field-maths 3.2]
 Nearest nearest_of(const SegmentSkeleton& s, const Vec3d& p) {
   const double length = marrow::length(s.to - s.from);
-  const Vec3d u = (s.to - s.from) / length, from_start = p - s.from;
-  const double foot = dot(from_start, u), slope = (s.radius_to - s.radius_from) / length;
-  const double foot_radius = s.radius_from + slope * foot;
-  if (foot_radius > 0) {
-    const Vec3d across = from_start - u * foot;
-    const double ahead = slope * length_squared(across) / foot_radius, t = foot + ahead;
-    if (t > 0 && t < length) {
-      Nearest inside{{across - u * ahead, s.radius_from + slope * t}};
-      let_move(inside, u, {}, slope);
-      inside.shares[0] = {t / length, inside.along_gradient / length};
-      return inside;
-    }
-  }
-  Nearest start{{from_start, s.radius_from}}, end{{p - s.to, s.radius_to}};
-  end.shares[0].value = 1;
-  return nearer(start, end);
+  const Vec3d u = (s.to - s.from) / length;
+  const SegmentPlace place = segment_place(s, p, length, u);
+  Nearest nearest{{place.to_point, place.radius}};
+  nearest.shares[0].value = place.along;
+  if (!place.is_inside) return nearest;
+  let_move(nearest, u, {}, (s.radius_to - s.radius_from) / length);
+  nearest.shares[0].gradient = nearest.along_gradient / length;
+  return nearest;
 }
 
-// In the plane likewise, with the gradient of the radius in place of the slope. `inside` when it is in the triangle.
+// In the plane as along a segment, with the gradient of the radius in place of the slope. `inside` when it is in the
+// triangle.
 struct PlaneNearest {
   Nearest at;
   bool inside;

@@ -4,36 +4,11 @@
 
 #include "field/kernel/inverse_family.h"
 #include "field/math/elementary.h"
+#include "field/skeleton/segment_place.h"
 #include "field/skeleton/skeletons.h"
 
 namespace marrow {
 namespace {
-
-// The point of the segment with the smallest scaled distance. What leads from it to p is made of differences from an
-// end, so that it loses nothing however far both are from the origin.
-struct Nearest {
-  Vec3d to_point;
-  double radius;
-  bool inside;  // not an end: the scaled distance is stationary there
-};
-
-// With p at height h over the line and t from its foot, e^2 = (t^2 + h^2) / (tau_f + sigma t)^2 is stationary
-// at t = sigma h^2 / tau_f, a minimum where tau_f > 0.   [field-maths 3.2]
-Nearest nearest_on(const SegmentSkeleton& segment, const Vec3d& p, double length, const UnitVec3& u) {
-  const Vec3d from_start = p - segment.from, from_end = p - segment.to;
-  const double foot = dot(from_start, u);
-  const Vec3d across = from_start - u * foot;
-  const double slope = (segment.radius_to - segment.radius_from) / length;
-  const double foot_radius = segment.radius_from + slope * foot;
-  if (foot_radius > 0) {
-    const double ahead = slope * length_squared(across) / foot_radius, s = foot + ahead;
-    if (s > 0 && s < length) return {across - u * ahead, segment.radius_from + slope * s, true};
-  }
-  const double first = length_squared(from_start) / (segment.radius_from * segment.radius_from);
-  const double second = length_squared(from_end) / (segment.radius_to * segment.radius_to);
-  if (first <= second) return {from_start, segment.radius_from, false};
-  return {from_end, segment.radius_to, false};
-}
 
 // How the direction v/d from the nearest point turns, as its Jacobian. Inside a cone-like segment
 // v/d = cos b h - sin b u with sin b = sigma e, so that turning is about the axis (1/h) and, because e changes
@@ -56,12 +31,12 @@ SkeletonSample distance_segment_field(const SegmentSkeleton& segment, const Vec3
   const double length = marrow::length(segment.to - segment.from);
   if (!(length > 0)) return {};
   const UnitVec3 u = UnitVec3::unchecked((segment.to - segment.from) / length);
-  const Nearest nearest = nearest_on(segment, p, length, u);
+  const SegmentPlace nearest = segment_place(segment, p, length, u.vec());
   const PointSkeleton point{{}, nearest.radius};
   if constexpr (Order >= Derivatives::Second) {
     SkeletonSample s = point_field<Order>(point, nearest.to_point, n);
     const double d = marrow::length(nearest.to_point);
-    if (!nearest.inside || s.si_gradient == Vec3d{}) return s;
+    if (!nearest.is_inside || s.si_gradient == Vec3d{}) return s;
     // grad_S f = k'(e) v/d:  J = k''(e) v/d (grad e)^T + k'(e) J(v/d),  grad e = v/d / radius
     const Vec3d direction = nearest.to_point / d;
     const double slope = -marrow::length(s.si_gradient);       // k'(e)

@@ -25,6 +25,10 @@ BlendField blend_of_all(Random& random, int round) {
   blend.alpha = round % 4 == 0 ? 1.5707963267948966 : random.between(0, 1.5);
   for (int i = random.whole(0, 3); i > 0; --i) blend.points.add(random.point(), {});
   for (int i = random.whole(1, 6); i > 0; --i) blend.segments.add(random.segment(), {});
+  for (int i = round % 3 == 0 ? random.whole(1, 9) : 0; i > 0; --i) {
+    blend.distance_segments.add(random.segment(), {});
+    blend.distance_segments.strands.push_back(static_cast<std::uint32_t>(i < 5));  // several of one strand
+  }
   if (blend.kernel == KernelFamily::Compact) return blend;
   if (round % 2 == 0) blend.arcs.add(random.arc(), {});
   if (round % 5 == 0) blend.triangles.add(random.triangle(), {});

@@ -249,11 +249,24 @@ BlendField strands(Random& random) {
   return blend;
 }
 
+// The same by distance, under any kernel: a strand is a polyline, or, as a file of a neuron, all of them together.
+BlendField by_distance(BlendField blend, Random& random) {
+  const std::size_t of_strand = maybe(random, 0.3) ? blend.segments.size() : 8;
+  for (std::size_t i = 0; i < blend.segments.size(); ++i)
+    blend.segments.strands.push_back(static_cast<std::uint32_t>(i / of_strand));
+  blend.distance_segments = std::exchange(blend.segments, {});
+  if (!maybe(random, 0.3)) return blend;
+  blend.kernel = KernelFamily::Compact;
+  blend.kernel_shape = random.between(1.2, 3);
+  return blend;
+}
+
 // Cut, warped, beside another one or by itself.
 void hundreds(BodyDraft& d, Random& random) {
   BlendField blend = strands(random);
   d.focus_size = 4 * blend.segments.skeletons[0].radius_from;
   for (std::size_t i = 0; i < blend.segments.size(); i += 5) d.places.push_back(blend.segments.skeletons[i].to);
+  if (maybe(random, 0.3)) blend = by_distance(std::move(blend), random);
   std::uint32_t one = d.leaf(BlendLeaf{std::make_shared<const BlendField>(std::move(blend))});
   if (maybe(random, 0.6)) one = d.combined({one, some_body(d, random)});
   if (maybe(random, 0.3)) one = d.one_of<Bend, Taper, Twist, Shear>({one});

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "field/blend/bounds/sum/distances_in_reach.h"
 #include "field/blend/bounds/sum/sum_bounds.h"
 #include "field/blend/local/far_expansion.h"
 #include "field/blend/local/source_maker.h"
@@ -46,6 +48,15 @@ constexpr double enough_far = 0.3;
 // A primitive becomes some eight sources, which share what it may be off by.
 constexpr double sources_of_primitive = 8;
 
+// Of a strand by distance smaller boxes see one segment, or the two of a joint.
+constexpr std::size_t few_segments = 32, few_of_strand = 2;
+
+bool has_many_candidates(const PrimitiveList<SegmentSkeleton>& list) {
+  std::size_t strands = 0;
+  for_each_strand(list, [&](std::size_t, std::span<const SegmentSkeleton>) { ++strands; });
+  return list.size() > few_segments + few_of_strand * strands;
+}
+
 }  // namespace
 
 LocalBlend::LocalBlend(const BlendField& blend, std::shared_ptr<const LocalBlend> outer)
@@ -65,11 +76,18 @@ std::shared_ptr<const LocalBlend> LocalBlend::make(const BlendField& blend, std:
   const BlendField& from = outer ? outer->rest_ : blend;
   std::shared_ptr<LocalBlend> made(new LocalBlend(blend, outer));
   BlendField& rest = made->rest_;
+  DistancesInReach distances =
+      distances_in_reach(from.distance_segments, {blend.kernel, blend.degree, blend.kernel_shape},
+                         {.center = box.center(), .radius = 0.5 * length(box.size())});
+  rest.distance_segments = std::move(distances.segments);
   if (blend.kernel == KernelFamily::Compact) {
     keep_reaching(from.points, blend.kernel_shape, box, rest.points);
     keep_reaching(from.segments, blend.kernel_shape, box, rest.segments);
     keep_reaching(from.triangles, blend.kernel_shape, box, rest.triangles);
     keep_reaching(from.arcs, blend.kernel_shape, box, rest.arcs);
+    keep_reaching(from.distance_triangles, blend.kernel_shape, box, rest.distance_triangles);
+    keep_reaching(from.distance_arcs, blend.kernel_shape, box, rest.distance_arcs);
+    for (const PointSkeleton& end : distances.ends) rest.points.skeletons.push_back(end);
   } else {
     SourceMaker maker(blend, box, largest_error, 1 / static_cast<double>(blend.size()));
     const auto add_all = [&](const auto& list) {
@@ -79,6 +97,7 @@ std::shared_ptr<const LocalBlend> LocalBlend::make(const BlendField& blend, std:
     add_all(from.segments);
     add_all(from.triangles);
     add_all(from.arcs);
+    for (const PointSkeleton& end : distances.ends) maker.add(end);
     rest.points = std::move(maker.rest_points);
     rest.segments = std::move(maker.rest_segments);
     rest.triangles = std::move(maker.rest_triangles);
@@ -87,10 +106,9 @@ std::shared_ptr<const LocalBlend> LocalBlend::make(const BlendField& blend, std:
     made->f_error_ += maker.f_error;
     made->S_error_ += maker.S_error;
     made->fold_far_sources(box);
+    rest.distance_triangles = from.distance_triangles;
+    rest.distance_arcs = from.distance_arcs;
   }
-  rest.distance_segments = from.distance_segments;
-  rest.distance_triangles = from.distance_triangles;
-  rest.distance_arcs = from.distance_arcs;
   rest.cani_hornus_segments = from.cani_hornus_segments;
   return !made->sources_.empty() || made->far_ || rest.size() < from.size() ? made : outer;
 }
@@ -163,6 +181,7 @@ std::size_t LocalBlend::near_count() const {
 }
 
 bool LocalBlend::is_mostly_near() const {
+  if (has_many_candidates(rest_.distance_segments)) return true;
   if (rest_.kernel == KernelFamily::Compact) return false;
   const std::size_t near = point_is_worth * rest_.points.size() + segment_is_worth * rest_.segments.size() +
                            arc_is_worth * rest_.arcs.size();

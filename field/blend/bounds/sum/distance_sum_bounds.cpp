@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "field/blend/bounds/sum/distances_in_reach.h"
 #include "field/blend/bounds/sum/steepest_slope.h"
 #include "field/blend/bounds/sum/sum_bounds.h"
 #include "field/math/elementary.h"
@@ -91,27 +92,44 @@ void narrow(SumBounds::Between& b, const SkeletonSample& middle, const Primitive
   b.S_by = S_by;
 }
 
-// e = min d / radius changes by rho / radius at most, f = k(e), |S| = |k'(e)|. `middle`: of the middle.
+// A primitive in the middle of the box, and its scaled distance from all places that count.
+struct Middle {
+  SkeletonSample sample;
+  double distance;  // not scaled
+  Interval scaled;
+};
+Middle middle_of(const auto& s, const SumBounds& sum, const Kernel& kernel) {
+  const SkeletonSample sample = distance_field<Derivatives::First>(s, sum.center(), kernel);
+  return {sample, distance_to(s, sum.center()), scaled_near(kernel, sample.value, sum.rho() / least_radius(s))};
+}
+Middle middle_of(const SegmentSkeleton& s, const SeenSegment& seen, const SumBounds& sum, const Kernel& kernel) {
+  const PointSkeleton place{{}, seen.place.radius};
+  const Vec3d& v = seen.place.to_point;
+  return {kernel.family == KernelFamily::Inverse ? point_field<Derivatives::First>(place, v, kernel.degree)
+                                                 : point_field<Derivatives::First>(place, v, kernel),
+          s.radius_from == s.radius_to ? length(v) : distance_to(s, sum.center()), seen.scaled};
+}
+
+// e = min d / radius changes by rho / radius at most, f = k(e), |S| = |k'(e)|.
 template <class Skeleton>
-SumBounds::Between distance_bounds(const Skeleton& s, const SkeletonSample& middle, const SumBounds& sum,
+SumBounds::Between distance_bounds(const Skeleton& s, const Middle& middle, const SumBounds& sum,
                                    const Kernel& kernel) {
-  const double distance = distance_to(s, sum.center());
+  const auto& [sample, distance, e] = middle;
   if (kernel.family == KernelFamily::Compact && distance > (sum.rho() + kernel.shape * largest_radius(s)) * (1 + 1e-9))
     return {.f = 0, .log_slope = 0};  // its support is elsewhere
-  const double f = middle.value, moved = sum.rho() / least_radius(s);
-  const Interval e = scaled_near(kernel, f, moved);
+  const double f = sample.value;
   const double turned = distance > sum.rho() ? turn(s, distance, sum.rho(), e) : inf;
   // S between its least and largest length, turned by as much.
   const auto give_S = [&](SumBounds::Between& b, double S_low, double S_high) {
     b.S_by = S_high;
-    if (!(turned < 1 && length(middle.si_gradient) > 0)) return;
-    b.S = normalize(middle.si_gradient) * (0.5 * (S_low + S_high));
+    if (!(turned < 1 && length(sample.si_gradient) > 0)) return;
+    b.S = normalize(sample.si_gradient) * (0.5 * (S_low + S_high));
     b.S_by = (0.5 * (S_high - S_low) + S_high * turned) * (1 + 1e-9);
   };
   if (kernel.family != KernelFamily::Inverse) {
     const Profile profile(kernel, 0);
     const Interval lengths = steepness_between(profile, kernel, e);
-    const double by = lengths.hi * moved * (1 + 1e-9) + 1e-10 * f;
+    const double by = lengths.hi * (sum.rho() / least_radius(s)) * (1 + 1e-9) + 1e-10 * f;
     SumBounds::Between b{.f = {std::max(0.0, f - by), f + by},
                          .log_slope = f > by ? lengths.hi / (least_radius(s) * (f - by)) * (1 + 1e-9) : inf};
     give_S(b, lengths.lo, lengths.hi);
@@ -133,14 +151,13 @@ double speed_of_place(const auto&, const Box3&) { return inf; }  // mean_angles.
 
 // The same for means, which ask for |grad f| = |S| / radius.
 template <class Skeleton>
-SumBounds::Part distance_part(const Skeleton& s, const SkeletonSample& middle, const SumBounds::Between& b,
-                              const SumBounds& sum, const Kernel& kernel) {
+SumBounds::Part distance_part(const Skeleton& s, const Middle& middle, const SumBounds::Between& b,
+                              const SumBounds& sum) {
   if (b.f.hi == 0) return {.steepest = 0, .bent = 0};
-  const double longest = length(b.S) + b.S_by, least = least_radius(s);
-  return {.sample = middle,
+  return {.sample = middle.sample,
           .f = b.f,
-          .steepest = longest / least * (1 + 1e-9),
-          .scaled = scaled_near(kernel, middle.value, sum.rho() / least),
+          .steepest = (length(b.S) + b.S_by) / least_radius(s) * (1 + 1e-9),
+          .scaled = middle.scaled,
           .place_speed = speed_of_place(s, sum.box())};
 }
 
@@ -179,51 +196,57 @@ struct Largest {
 
 }  // namespace
 
-// Of a strand only what may be the largest counts.
-void SumBounds::keep_strand(const BlendField& blend, std::size_t first, std::span<const Between> strand) {
-  const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+// Of a strand only what may be the largest counts; the rest is nothing to means.
+void SumBounds::keep_strand(std::size_t size, std::span<const SeenSegment> seen, std::span<const Part> parts) {
   double largest = 0;
-  for (const Between& b : strand) largest = std::max(largest, b.f.lo);
+  for (const Part& part : parts) largest = std::max(largest, part.f.lo);
   std::vector<std::size_t> candidates;
-  for (std::size_t i = 0; i < strand.size(); ++i) {
-    if (strand[i].f.hi < largest || strand[i].f.hi == 0) {
+  for (std::size_t i = 0, k = 0; i < size; ++i) {
+    const Part* const part = k < seen.size() && seen[k].index == i ? &parts[k++] : nullptr;
+    if (part == nullptr || part->f.hi < largest || part->f.hi == 0) {
       keep({.steepest = 0, .bent = 0});
       continue;
     }
     candidates.push_back(parts_.size());
-    const SegmentSkeleton& s = blend.distance_segments.skeletons[first + i];
-    keep(distance_part(s, distance_field<Derivatives::First>(s, center_, kernel), strand[i], *this, kernel));
+    keep(*part);
   }
   if (candidates.size() > 1) takeovers_.push_back(std::move(candidates));
 }
 
+void SumBounds::add_strands(const BlendField& blend) {
+  const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+  NearestSegments nearest(kernel, {.center = center_, .radius = rho_});
+  std::vector<Part> parts;
+  for_each_strand(blend.distance_segments, [&](std::size_t, std::span<const SegmentSkeleton> strand) {
+    const auto seen = nearest.of(strand);
+    parts.clear();
+    std::optional<Largest> all;
+    for (const SeenSegment& one : seen) {
+      const SegmentSkeleton& s = strand[one.index];
+      const Middle middle = middle_of(s, one, *this, kernel);
+      const Between bounds = distance_bounds(s, middle, *this, kernel);
+      if (all) all->add(bounds, one.index);
+      else all.emplace(bounds, one.index);
+      if (keeps_parts_) parts.push_back(distance_part(s, middle, bounds, *this));
+    }
+    if (keeps_parts_) keep_strand(strand.size(), seen, parts);
+    if (!all) return;
+    if (has_slopes()) all->bounds.slopes = all->slopes(strand, box_, kernel);
+    add(all->bounds);
+  });
+}
+
 void SumBounds::add_distances(const BlendField& blend) {
   const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
-  const auto& list = blend.distance_segments;
-  std::vector<Between> strand;
-  const auto bounds_of = [&](const SegmentSkeleton& s) {
-    return distance_bounds(s, distance_field<Derivatives::ScaleInvariant>(s, center_, kernel), *this, kernel);
-  };
-  for (std::size_t first = 0; first < list.size(); first += strand.size()) {
-    strand = {bounds_of(list.skeletons[first])};
-    Largest all(strand.front(), first);
-    for (std::size_t i = first + 1; !list.strands.empty() && i < list.size() && list.strands[i] == list.strands[first];
-         ++i) {
-      strand.push_back(bounds_of(list.skeletons[i]));
-      all.add(strand.back(), i);
-    }
-    if (keeps_parts_) keep_strand(blend, first, strand);
-    if (has_slopes()) all.bounds.slopes = all.slopes(list.skeletons, box_, kernel);
-    add(all.bounds);
-  }
+  add_strands(blend);
   const auto add_one = [&](const auto& s) {
-    const SkeletonSample middle = distance_field<Derivatives::First>(s, center_, kernel);
+    const Middle middle = middle_of(s, *this, kernel);
     Between bounds = distance_bounds(s, middle, *this, kernel);
     std::optional<PrimitiveSlopes> slopes;
     if (bounds.f.hi == 0) slopes = PrimitiveSlopes{};
     else if (has_slopes() || !is_even(s)) slopes = distance_slopes(s, box_, kernel);
-    if (slopes && bounds.f.hi > 0 && !is_even(s)) narrow(bounds, middle, *slopes, rho_);
-    if (keeps_parts_) keep(distance_part(s, middle, bounds, *this, kernel));
+    if (slopes && bounds.f.hi > 0 && !is_even(s)) narrow(bounds, middle.sample, *slopes, rho_);
+    if (keeps_parts_) keep(distance_part(s, middle, bounds, *this));
     if (has_slopes()) bounds.slopes = slopes;
     add(bounds);
   };

@@ -7,6 +7,7 @@
 
 #include "field/blend/blend_field.h"
 #include "field/blend/bounds/sum/distance_slopes.h"
+#include "field/blend/bounds/sum/distances_in_reach.h"
 #include "field/blend/primitive_bounds.h"
 #include "field/blend/sources/far_polynomial.h"
 #include "field/blend/sources/source_sums.h"
@@ -107,7 +108,8 @@ class SumBounds {
   void add_cauchy(const BlendField&);
   void add_compact(const BlendField&);
   void add_distances(const BlendField&);
-  void keep_strand(const BlendField&, std::size_t first, std::span<const Between>);
+  void add_strands(const BlendField&);
+  void keep_strand(std::size_t size, std::span<const SeenSegment>, std::span<const Part>);
 
   Box3 box_;
   std::optional<Stretch> stretch_;
