@@ -1,5 +1,7 @@
 #include "field/blend/bounds/blend_bounds.h"
 
+#include <algorithm>
+
 #include "field/blend/bounds/correction/correction_bounds.h"
 
 namespace marrow {
@@ -48,6 +50,24 @@ Interval slope_along(const SumBounds& sum, const PartialBounds& by, const Vec3<I
   return by.df * sum.f_along() + by.dG * G_slope + by.dalpha * alpha_slope;
 }
 
+// Up to this field the operator leaves lone skeletons alone.   [bounded_correction.h]
+double largest_left_alone(const Correction& least) {
+  constexpr double of_top = 0.85;
+  return least.bounded() ? of_top * least.bounded()->curve().top_field() : inf;
+}
+
+// C = f, to within what the operator rounds. Its slopes need none of S, which may jump.
+BlendBounds bounds_on_curve(const SumBounds& sum) {
+  constexpr double rounding = 1e-12;
+  const Interval f = sum.f();
+  const double by = rounding * (1 + f.hi);
+  BlendBounds b{.value = {std::max(0.0, f.lo - by), f.hi + by}, .gradient = unknown};
+  if (!sum.has_gradient()) return b;
+  if (sum.stretch() != nullptr) b.along = sum.f_along();
+  else b.gradient = sum.gradient();
+  return b;
+}
+
 }  // namespace
 
 BlendBounds blend_bounds(const BlendField& blend, const Box3& box, Wanted wanted, const Stretch* stretch) {
@@ -66,6 +86,7 @@ BlendBounds blend_bounds(const BlendField& blend, const SumBounds& sum, const An
     if (alpha.lo < 0 && !blend.cavity) return {{0, inf}, unknown};
     return {{corrected(blend, least, alpha, {f.lo, f.lo}, {0, 0}).lo, inf}, unknown};
   }
+  if (sum.is_on_curve() && alpha.lo >= 0 && f.hi < largest_left_alone(least)) return bounds_on_curve(sum);
   const Vec3<Interval> S = sum.S();
   const Interval G = sqrt(square(S.x) + square(S.y) + square(S.z));
   BlendBounds b{.value = corrected(blend, least, alpha, f, G), .gradient = unknown};

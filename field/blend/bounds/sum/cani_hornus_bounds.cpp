@@ -116,7 +116,7 @@ void SumBounds::add_cani_hornus(const BlendField& blend) {
     Between b = ball.bounds();
     if (keeps_parts_)
       keep({.sample = cani_hornus_field<Derivatives::First>(s, center_), .f = b.f, .steepest = b.log_slope * b.f.hi});
-    if (has_slopes()) b.slopes = ball.slopes();
+    if (has_gradient()) b.slopes = ball.slopes();
     add(b);
   }
 }

@@ -183,14 +183,20 @@ struct Largest {
     count = std::min(count + 1, candidates.size() + 1);
   }
 
-  // From one to the other S may jump, unless all of them see the same end.
-  std::optional<PrimitiveSlopes> slopes(const auto& skeletons, const Box3& box, const Kernel& kernel) const {
-    if (bounds.f.hi == 0) return PrimitiveSlopes{};
-    if (count > candidates.size()) return {};
-    const auto first = distance_slopes(skeletons[candidates[0]], box, kernel);
-    for (std::size_t i = 1; i < count && first; ++i)
-      if (distance_slopes(skeletons[candidates[i]], box, kernel) != first) return {};
-    return first;
+  // What slopes there are: where one takes over from another f is continuous, with slopes of either, but S may jump,
+  // unless all of them see the same end.
+  void give_slopes(const auto& skeletons, const Box3& box, const Kernel& kernel) {
+    if (bounds.f.hi == 0) bounds.slopes = PrimitiveSlopes{};
+    if (bounds.f.hi == 0 || count > candidates.size()) return;
+    std::optional<PrimitiveSlopes> all = distance_slopes(skeletons[candidates[0]], box, kernel);
+    for (std::size_t i = 1; i < count && all; ++i) {
+      const auto other = distance_slopes(skeletons[candidates[i]], box, kernel);
+      if (!other) return;
+      if (*other == *all) continue;
+      bounds.S_jumps = true;
+      for (std::size_t k = 0; k < 3; ++k) all->gradient[k] = hull(all->gradient[k], other->gradient[k]);
+    }
+    bounds.slopes = all;
   }
 };
 
@@ -231,7 +237,8 @@ void SumBounds::add_strands(const BlendField& blend) {
     }
     if (keeps_parts_) keep_strand(strand.size(), seen, parts);
     if (!all) return;
-    if (has_slopes()) all->bounds.slopes = all->slopes(strand, box_, kernel);
+    if (has_gradient()) all->give_slopes(strand, box_, kernel);
+    all->bounds.is_on_curve = true;
     add(all->bounds);
   });
 }
@@ -244,10 +251,11 @@ void SumBounds::add_distances(const BlendField& blend) {
     Between bounds = distance_bounds(s, middle, *this, kernel);
     std::optional<PrimitiveSlopes> slopes;
     if (bounds.f.hi == 0) slopes = PrimitiveSlopes{};
-    else if (has_slopes() || !is_even(s)) slopes = distance_slopes(s, box_, kernel);
+    else if (has_gradient() || !is_even(s)) slopes = distance_slopes(s, box_, kernel);
     if (slopes && bounds.f.hi > 0 && !is_even(s)) narrow(bounds, middle.sample, *slopes, rho_);
     if (keeps_parts_) keep(distance_part(s, middle, bounds, *this));
-    if (has_slopes()) bounds.slopes = slopes;
+    if (has_gradient()) bounds.slopes = slopes;
+    bounds.is_on_curve = true;
     add(bounds);
   };
   for (const auto& s : blend.distance_triangles.skeletons) add_one(s);

@@ -28,7 +28,7 @@ SumBounds::SumBounds(const Box3& box, const Stretch* stretch)
 
 SumBounds::SumBounds(const BlendField& blend, const Box3& box, Wanted wanted, const Stretch* stretch)
     : SumBounds(box, stretch) {
-  has_slopes_ = wanted == Wanted::Slopes;
+  has_gradient_ = wanted == Wanted::Slopes;
   keeps_parts_ = blend.alpha_per_skeleton || !blend.direction_bounds.empty();
   if (blend.kernel == KernelFamily::Inverse) add_inverse(blend);
   if (blend.kernel == KernelFamily::Cauchy) add_cauchy(blend);
@@ -38,6 +38,7 @@ SumBounds::SumBounds(const BlendField& blend, const Box3& box, Wanted wanted, co
 
 void SumBounds::add(const SkeletonSample& s, double distance, double radius, int m) {
   keep({.sample = s, .distance = distance, .m = m});
+  ++added_;
   const double q = rho_ / distance;
   log_slope_ = std::max(log_slope_, q < 1 ? m / (distance - rho_) * (1 + 1e-12) : inf);
   if (!(q < 0.9) || !std::isfinite(s.value)) {
@@ -62,6 +63,7 @@ void SumBounds::add(const SkeletonSample& s, double distance, double radius, int
 // To second order, or, in boxes so large that it says less, to first. With v = a u + w, u along the primitive, |v H v|
 // is at most most_bent w^2 + ends_bent (a^2 + 2 a w).
 void SumBounds::add(const SkeletonSample& s, const Smooth& b) {
+  ++added_;
   const double longest = b.steepest * b.radius, most_J = b.most_bent * b.radius;
   const double J_by = b.J_changes + b.ends_J_changes * rho_ + compact_error * most_J;
   const bool has_J = J_by < most_J;
@@ -89,6 +91,7 @@ void SumBounds::add(const SkeletonSample& s, const Smooth& b) {
 
 // Within rho distances shrink by 1 - rho / nearest at most, and B3 and B4 hold with the sums of the sources.
 void SumBounds::add(const SourceSums& sources) {
+  ++added_;
   const SourceSample s = sources.at(center_);
   const int m = sources.exponent();
   const double q = rho_ / s.nearest, f = s.sum.value;
@@ -112,6 +115,7 @@ void SumBounds::add(const SourceSums& sources) {
 }
 
 void SumBounds::add(const FarPolynomial& far) {
+  ++added_;
   const SkeletonSample s = far.at(center_);
   const FarPolynomial::Bounds& b = far.bounds();
   log_slope_ = std::max(log_slope_, b.log_slope);
@@ -129,6 +133,10 @@ void SumBounds::add(const FarPolynomial& far) {
 
 void SumBounds::add(const Between& b) {
   const Interval& f = b.f;
+  if (f.hi > 0) {
+    ++added_;
+    on_curve_ += b.is_on_curve;
+  }
   log_slope_ = std::max(log_slope_, b.log_slope);
   if (b.slopes) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -136,8 +144,9 @@ void SumBounds::add(const Between& b) {
       for (std::size_t j = 0; j < 3; ++j) between_.J[i][j] += b.slopes->J[i][j];
     }
   } else {
-    has_slopes_ = false;
+    has_gradient_ = false;
   }
+  has_slopes_ = has_slopes_ && !b.S_jumps;
   low_ += std::max(0.0, f.lo);
   if (!(f.hi < inf)) {
     unbounded_ = true;
@@ -183,7 +192,7 @@ Interval SumBounds::f() const {
 }
 
 Vec3<Interval> SumBounds::gradient() const {
-  if (!has_slopes()) return {Interval::everything(), Interval::everything(), Interval::everything()};
+  if (!has_gradient()) return {Interval::everything(), Interval::everything(), Interval::everything()};
   const double by = second_ * rho_ + slope_error_;
   return Vec3<Interval>{pad(gradient_.x, by), pad(gradient_.y, by), pad(gradient_.z, by)} + between_.gradient;
 }
@@ -212,6 +221,7 @@ void SumBounds::add_integral(const BlendField& blend, const Skeleton& s, double 
     add(sample(), distance, largest_radius(s), m);
     return;
   }
+  ++added_;
   unbounded_ = true;
   log_slope_ = inf;
   const Profile profile({blend.kernel, blend.degree, blend.kernel_shape}, dimension_of(s));

@@ -50,6 +50,8 @@ class SumBounds {
     double S_by = 0;   ///< up to a vector of this length
     double log_slope;  ///< of |grad ln f|
     std::optional<PrimitiveSlopes> slopes{};
+    bool S_jumps = false;      ///< then its slopes are of f alone
+    bool is_on_curve = false;  ///< |S| is g(f): of primitives by distance
   };
   void add(const Between&);
   /// A primitive of which the largest first and second derivatives anywhere are known, up to a radius; and how far
@@ -82,8 +84,12 @@ class SumBounds {
   /// A skeleton is so near that f has no upper bound.
   bool unbounded() const { return unbounded_; }
   Interval f() const;
-  /// Whether gradient() and J() are bounded.
-  bool has_slopes() const { return has_slopes_ && !unbounded_; }
+  /// Whether gradient() is bounded, and J() too.
+  bool has_gradient() const { return has_gradient_ && !unbounded_; }
+  bool has_slopes() const { return has_slopes_ && has_gradient(); }
+  /// Nothing but one primitive by distance has a field in the box, so that the operator leaves f as it is, where it
+  /// leaves lone skeletons alone.
+  bool is_on_curve() const { return added_ == 1 && on_curve_ == 1; }
   Vec3<Interval> gradient() const;
   Vec3<Interval> S() const;
   /// d S_i / d p_j
@@ -120,7 +126,8 @@ class SumBounds {
   Vec3d gradient_{}, S_{};
   Matrix3 J_{};
   PrimitiveSlopes between_{};
-  bool unbounded_ = false, has_slopes_ = true, keeps_parts_ = false;
+  bool unbounded_ = false, has_gradient_ = true, has_slopes_ = true, keeps_parts_ = false;
+  std::size_t added_ = 0, on_curve_ = 0;
   std::vector<Part> parts_;
   std::vector<std::vector<std::size_t>> takeovers_;
 };
