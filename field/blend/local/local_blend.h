@@ -53,7 +53,6 @@ class LocalBlend {
 
  private:
   LocalBlend(const BlendField&, std::shared_ptr<const LocalBlend> outer);
-  friend class SourceMaker;
   /// The one of itself and those around it that stands for all farther out.
   const LocalBlend& last() const;
   void fold_far_sources(const Box3&);
