@@ -3,28 +3,39 @@
 
 #include <cstddef>
 #include <limits>
+#include <span>
 
 #include "field/blend/blend_field.h"
 #include "field/skeleton/skeletons.h"
 
 namespace marrow {
 
+/// Calls visit(first, strand) for each strand of a list, a span of its skeletons, with the index where it begins.
+template <class Skeleton, class Visit>
+void for_each_strand(const PrimitiveList<Skeleton>& list, const Visit& visit) {
+  const std::span<const Skeleton> all = list.skeletons;
+  for (std::size_t first = 0, end = 0; first < list.size(); first = end) {
+    end = first + 1;
+    while (end < list.size() && !list.strands.empty() && list.strands[end] == list.strands[first]) ++end;
+    visit(first, all.subspan(first, end - first));
+  }
+}
+
 /// Calls visit(sample, list, i) for each item of a list, where a strand of a distance list is one item: i is the one
 /// with the largest value.
-template <class List, class Field, class Visit>
-void visit_strands(const List& list, const Field& field, const Visit& visit) {
-  for (std::size_t i = 0; i < list.size();) {
-    SkeletonSample largest = field(list.skeletons[i]);
-    std::size_t at = i;
-    const std::size_t first = i++;
-    for (; !list.strands.empty() && i < list.size() && list.strands[i] == list.strands[first]; ++i) {
-      const SkeletonSample other = field(list.skeletons[i]);
+template <class Skeleton, class Field, class Visit>
+void visit_strands(const PrimitiveList<Skeleton>& list, const Field& field, const Visit& visit) {
+  for_each_strand(list, [&](std::size_t first, std::span<const Skeleton> strand) {
+    SkeletonSample largest = field(strand.front());
+    std::size_t at = first;
+    for (std::size_t i = 1; i < strand.size(); ++i) {
+      const SkeletonSample other = field(strand[i]);
       if (!(other.value > largest.value)) continue;
       largest = other;
-      at = i;
+      at = first + i;
     }
     visit(largest, list, at);
-  }
+  });
 }
 
 /// Whether a list of this blend has the distance model.

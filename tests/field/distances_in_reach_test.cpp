@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "field/blend/primitive_visit.h"
 #include "field/math/elementary.h"
 #include "field/skeleton/skeletons.h"
 #include "tests/field/random.h"

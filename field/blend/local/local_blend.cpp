@@ -10,6 +10,7 @@
 #include "field/blend/bounds/sum/sum_bounds.h"
 #include "field/blend/local/far_expansion.h"
 #include "field/blend/local/source_maker.h"
+#include "field/blend/primitive_visit.h"
 #include "field/kernel/inverse_family.h"
 #include "field/skeleton/distance.h"
 #include "field/skeleton/radii.h"

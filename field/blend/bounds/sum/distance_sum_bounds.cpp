@@ -11,6 +11,7 @@
 #include "field/blend/bounds/sum/distances_in_reach.h"
 #include "field/blend/bounds/sum/steepest_slope.h"
 #include "field/blend/bounds/sum/sum_bounds.h"
+#include "field/blend/primitive_visit.h"
 #include "field/math/elementary.h"
 #include "field/skeleton/distance.h"
 #include "field/skeleton/radii.h"
@@ -186,8 +187,11 @@ struct Largest {
   // What slopes there are: where one takes over from another f is continuous, with slopes of either, but S may jump,
   // unless all of them see the same end.
   void give_slopes(const auto& skeletons, const Box3& box, const Kernel& kernel) {
-    if (bounds.f.hi == 0) bounds.slopes = PrimitiveSlopes{};
-    if (bounds.f.hi == 0 || count > candidates.size()) return;
+    if (bounds.f.hi == 0) {
+      bounds.slopes = PrimitiveSlopes{};
+      return;
+    }
+    if (count > candidates.size()) return;
     std::optional<PrimitiveSlopes> all = distance_slopes(skeletons[candidates[0]], box, kernel);
     for (std::size_t i = 1; i < count && all; ++i) {
       const auto other = distance_slopes(skeletons[candidates[i]], box, kernel);

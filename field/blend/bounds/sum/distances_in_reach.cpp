@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "field/blend/primitive_visit.h"
 #include "field/math/box3.h"
 #include "field/skeleton/distance.h"
 #include "field/skeleton/radii.h"
@@ -14,28 +15,26 @@ namespace {
 // Relative, for what rounding of distances may hide.
 constexpr double slack = 1e-12;
 
+SegmentPlace place_seen_from(const Ball& ball, const SegmentSkeleton& s) {
+  const double size = length(s.to - s.from);
+  return segment_place(s, ball.center, size, (s.to - s.from) / size);
+}
+
 // The place nearest to the middle is no farther from others than by the way over its radius; and no place gets nearer
 // than by the way over its own, or, in the same proportion, than the nearest one does.
 SeenSegment seen_from(const Ball& ball, const SegmentSkeleton& s, std::size_t index) {
-  const double size = length(s.to - s.from);
-  const SegmentPlace place = segment_place(s, ball.center, size, (s.to - s.from) / size);
+  const SegmentPlace place = place_seen_from(ball, s);
   const double e = length(place.to_point) / place.radius;
   double least = std::max(0.0, e - ball.radius / least_radius(s));
   if (s.radius_from != s.radius_to) least = std::max(least, e * (1 - ball.radius / distance_to(s, ball.center)));
   return {index, place, {least * (1 - slack), (e + ball.radius / place.radius) * (1 + slack)}};
 }
 
-// The place nearest to `p`, not scaled.
-Vec3d plain_to_point(const SegmentSkeleton& s, const Vec3d& p) {
-  const Vec3d axis = s.to - s.from, v = p - s.from;
-  return v - axis * std::clamp(dot(v, axis) / length_squared(axis), 0.0, 1.0);
-}
-
 // Whether another place of the strand, seen as v from the middle, is nearer than this segment all over the ball. At a
 // way w from the middle the distance to it is d' + u' w or more, as distances to segments are convex, and at least that
 // over the largest radius; the place is no farther than d + u w + w^2 / 2d.
 bool is_behind(const SegmentSkeleton& s, const SegmentPlace& place, const Ball& ball) {
-  const Vec3d own = plain_to_point(s, ball.center);
+  const Vec3d own = place_seen_from(ball, {s.from, s.to, 1, 1}).to_point;  // of one radius: not scaled
   const double d = length(place.to_point), own_d = length(own), radius = largest_radius(s);
   if (!(d > 0 && own_d > 0)) return false;
   const double e = d / place.radius, own_e = own_d / radius;

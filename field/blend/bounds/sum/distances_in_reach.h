@@ -12,6 +12,7 @@
 
 namespace marrow {
 
+/// Lengths are those of the blend.
 struct Ball {
   Vec3d center;
   double radius;
@@ -44,16 +45,5 @@ struct DistancesInReach {
   std::vector<PointSkeleton> ends;          ///< for strands of which the ball sees nothing else
 };
 DistancesInReach distances_in_reach(const PrimitiveList<SegmentSkeleton>&, const Kernel&, const Ball&);
-
-/// Calls visit(first, strand) for each strand of a list of segments by distance, with the index where it begins.
-template <class Visit>
-void for_each_strand(const PrimitiveList<SegmentSkeleton>& list, const Visit& visit) {
-  const std::span<const SegmentSkeleton> all = list.skeletons;
-  for (std::size_t first = 0, end = 0; first < list.size(); first = end) {
-    end = first + 1;
-    while (end < list.size() && !list.strands.empty() && list.strands[end] == list.strands[first]) ++end;
-    visit(first, all.subspan(first, end - first));
-  }
-}
 
 }  // namespace marrow
