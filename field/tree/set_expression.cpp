@@ -51,23 +51,13 @@ FieldTree part_of_tree(const FieldTree& tree, std::span<const std::uint32_t> of,
 class SetExpression::Reader {
  public:
   Reader(const FieldTree& tree, const StandsAlone& stands_alone)
-      : tree_(tree), alone_(tree.records().size()), beside_(tree.records().size()) {
-    for (std::size_t i = 0; i < alone_.size(); ++i) {
-      const FieldTree::Record& record = tree.records()[i];
-      const TreeNode& node = tree.node(record);
-      const auto* blend = std::get_if<BlendLeaf>(&node);
-      alone_[i] = blend != nullptr && stands_alone(*blend->field);
-      if (record.child_count == 0) beside_[i] = blend != nullptr ? static_cast<double>(blend->field->size()) : 1;
-      for (const std::uint32_t child : tree.children(record)) {
-        if (is_operation(node)) alone_[i] = alone_[i] || alone_[child];
-        beside_[i] += beside_[child];
-      }
-    }
+      : tree_(tree), stands_alone_(stands_alone), below_(tree.records().size()) {
+    for (std::uint32_t i = 0; i < below_.size(); ++i) below_[i] = look_below(i);
   }
 
   // None where there is more than an expression is for.
   std::optional<SetExpression> read(std::uint32_t root) {
-    if (!alone_[root]) return {};
+    if (!below_[root].is_told_apart) return {};
     made_ = {};
     entered_ = 0;
     too_large_ = false;
@@ -80,6 +70,45 @@ class SetExpression::Reader {
   }
 
  private:
+  // What stands below a record, counted on every way to it.
+  struct Below {
+    double records = 1, primitives = 0;
+    double alone = 0;            // blends that stand alone
+    double beside = 0;           // primitives but those
+    bool is_told_apart = false;  // such blends are operands
+  };
+
+  Below look_below(std::uint32_t record) const {
+    const TreeNode& node = tree_.node(tree_.records()[record]);
+    Below below;
+    if (const auto* blend = std::get_if<BlendLeaf>(&node)) {
+      below.primitives = static_cast<double>(blend->field->size());
+      below.is_told_apart = stands_alone_(*blend->field);
+      below.alone = below.is_told_apart ? 1 : 0;
+    } else if (children(record).empty()) {
+      below.primitives = 1;
+    }
+    below.beside = below.is_told_apart ? 0 : below.primitives;
+    for (const std::uint32_t child : children(record)) {
+      const Below& of = below_[child];
+      below.records += of.records;
+      below.primitives += of.primitives;
+      below.alone += of.alone;
+      below.beside += of.beside;
+      below.is_told_apart = below.is_told_apart || of.is_told_apart;
+    }
+    if (!children(record).empty() && !is_operation(node))
+      below.is_told_apart = below.is_told_apart && may_lend(below) && lent_by(part_of_tree(tree_, {{record}}, {}));
+    return below;
+  }
+  static bool may_lend(const Below& below) {
+    return below.alone == 1 && below.records <= static_cast<double>(most_nodes) &&
+           below.beside <= static_cast<double>(most_beside);
+  }
+  std::shared_ptr<const BlendInTree> lent_by(const FieldTree& tree) const {
+    return BlendInTree::of(tree, stands_alone_);
+  }
+
   template <class... Kinds>
   static bool is_any_of(const TreeNode& node) {
     return (std::holds_alternative<Kinds>(node) || ...);
@@ -98,7 +127,8 @@ class SetExpression::Reader {
     if (const auto* warp = std::get_if<AffineWarp>(&node))
       return add(children(record)[0], world_from_parent * warp->parent_from_child, negated);
     if (const auto* blend = std::get_if<BlendLeaf>(&node))
-      return append(Operand{blend->field, world_from_parent, {}}, static_cast<double>(blend->field->size()), negated);
+      return append(Operand{blend->field, world_from_parent, {}, {}}, below_[record].primitives, negated);
+    if (!is_operation(node)) return add_lender(record, world_from_parent, negated);
     Node made;
     made.negated = negated;
     const bool takes_away = is_difference(node);
@@ -108,6 +138,23 @@ class SetExpression::Reader {
     if (too_large_) return 0;  // of what is there by now nothing will be asked
     std::stable_sort(made.children.begin(), made.children.end(),
                      [&](NodeIndex a, NodeIndex b) { return made_.nodes_[a].cost < made_.nodes_[b].cost; });
+    return append(std::move(made));
+  }
+
+  // The blend first, then all that holds it.
+  NodeIndex add_lender(std::uint32_t record, const Affine& map, bool negated) {
+    Operand whole{nullptr, {}, part_of_tree(tree_, {{record}}, map), {}};
+    whole.lent = lent_by(whole.tree);
+    too_large_ = too_large_ || whole.lent == nullptr;  // as rounding has it
+    if (too_large_) return 0;
+    Node made;
+    made.kind = Node::Kind::Lender;
+    made.negated = negated;
+    const double of_blend = below_[record].primitives - below_[record].beside;
+    made.children.push_back(
+        append(Operand{whole.lent->blend(), whole.lent->tree_from_blend(), {}, {}}, of_blend, false));
+    made.children.push_back(append(std::move(whole), below_[record].primitives, false));
+    made.operand = made_.nodes_[made.children.back()].operand;
     return append(std::move(made));
   }
 
@@ -121,7 +168,7 @@ class SetExpression::Reader {
     if (too_large_) return;
     std::vector<std::uint32_t> rest;
     for (const std::uint32_t child : of) {
-      if (alone_[child]) to.children.push_back(add(child, map, negated));
+      if (below_[child].is_told_apart) to.children.push_back(add(child, map, negated));
       else rest.push_back(child);
     }
     // Taken away is what is in any of them.
@@ -133,10 +180,10 @@ class SetExpression::Reader {
 
   NodeIndex add_rest(std::span<const std::uint32_t> records, const Affine& map, bool negated) {
     double primitives = 0;
-    for (const std::uint32_t record : records) primitives += beside_[record];
+    for (const std::uint32_t record : records) primitives += below_[record].primitives;
     too_large_ = too_large_ || primitives > static_cast<double>(most_beside);
     if (too_large_) return 0;
-    return append(Operand{nullptr, {}, part_of_tree(tree_, records, map)}, primitives, negated);
+    return append(Operand{nullptr, {}, part_of_tree(tree_, records, map), {}}, primitives, negated);
   }
 
   NodeIndex append(Operand operand, double cost, bool negated) {
@@ -159,8 +206,8 @@ class SetExpression::Reader {
   }
 
   const FieldTree& tree_;
-  std::vector<char> alone_;     // of records: whether a blend that stands alone is in it, below operations only
-  std::vector<double> beside_;  // of records: primitives below it
+  const StandsAlone& stands_alone_;
+  std::vector<Below> below_;  // of records
   SetExpression made_;
   std::size_t entered_ = 0;  // records, so that no chain of them is followed too far
   bool too_large_ = false;
@@ -184,9 +231,16 @@ void SetExpression::find_paths(NodeIndex index, bool is_taken_away, const std::v
   const Node& node = nodes_[index];
   is_taken_away = is_taken_away != node.negated;
   if (node.kind == Node::Kind::Operand) {
-    paths_[node.operand] = {is_taken_away, above};
-    std::ranges::stable_sort(paths_[node.operand].conditions, {},
-                             [&](const Condition& c) { return nodes_[c.node].cost; });
+    const auto cost = [&](const Condition& c) { return c.wanted == Side::Unknown ? 0 : nodes_[c.node].cost; };
+    paths_[node.operand] = {is_taken_away, !above.empty() && above.back().wanted == Side::Unknown, above};
+    std::ranges::stable_sort(paths_[node.operand].conditions, {}, cost);
+    return;
+  }
+  if (node.kind == Node::Kind::Lender) {
+    std::vector<Condition> decides = above;
+    decides.push_back({index, Side::Unknown});
+    find_paths(node.children[0], is_taken_away, decides);
+    find_paths(node.children[1], is_taken_away, above);
     return;
   }
   // What is in a union is so whatever the others say, unless they are all outside.

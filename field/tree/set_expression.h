@@ -3,6 +3,9 @@
 //
 // With an operand for each part that a tracer of its own knows better, the surface of the whole is made of pieces of
 // the surfaces of its operands: where, as the other operands stand there, one of them decides.
+//
+// What is below another operator, such as a soft union, is an operand as a whole; and a blend in it is one, too, where
+// it decides by itself (blend_in_tree.h).
 #pragma once
 
 #include <cstddef>
@@ -14,7 +17,9 @@
 #include <vector>
 
 #include "field/math/affine.h"
+#include "field/math/box3.h"
 #include "field/math/side.h"
+#include "field/tree/blend_in_tree.h"
 #include "field/tree/field_tree.h"
 
 namespace marrow {
@@ -28,12 +33,15 @@ class SetExpression {
     std::shared_ptr<const BlendField> blend;  ///< null: `tree` is it
     Affine world_from_blend;
     FieldTree tree;
+    /// Of a tree: its blend, which is the operand before this one, and decides instead where it can.
+    std::shared_ptr<const BlendInTree> lent;
   };
 
   using StandsAlone = std::function<bool(const BlendField&)>;
   /// Of a tree, or of what stands below a record of it: unions, intersections and differences, crisp or sharp ones,
-  /// which have the same surface, with those blends as operands that are said to stand alone. None where it holds no
-  /// such blend, or more than an expression is for (most_nodes, most_beside).
+  /// which have the same surface, with those blends as operands that are said to stand alone, and other operators on
+  /// one of them that leave most of its surface as it is. None where it holds no such blend, or more than an expression
+  /// is for (most_nodes, most_beside).
   static std::optional<SetExpression> of(const FieldTree&, std::uint32_t record, const StandsAlone&);
   /// The same of each of many records, at once.
   static std::vector<std::optional<SetExpression>> of(const FieldTree&, std::span<const std::uint32_t> records,
@@ -46,57 +54,82 @@ class SetExpression {
   /// Whether the whole is inside where the operand is outside.
   bool is_taken_away(std::size_t operand) const { return paths_[operand].is_taken_away; }
 
-  /// The side of the whole from those of its operands, side_of(operand), which are asked as far as needed. Unknown
-  /// where known ones do not tell.   [strong logic of three values: Kleene 1952]
+  /// Whether it is a blend that is lent: only in places does it decide by itself.
+  bool is_lent(std::size_t operand) const { return paths_[operand].is_lent; }
+
+  /// The side of the whole, all over a box, from those of its operands, side_of(operand), which are asked as far as
+  /// needed. Unknown where known ones do not tell.   [strong logic of three values: Kleene 1952]
   template <class SideOf>
-  Side side(const SideOf& side_of) const {
-    return side_of_node(root_, side_of);
+  Side side(const Box3& where, const SideOf& side_of) const {
+    return side_of_node(root_, where, side_of);
   }
 
   /// Whether the whole changes sides where the operand does, as the others stand; nothing where known ones do not tell.
   template <class SideOf>
-  std::optional<bool> counts(std::size_t operand, const SideOf& side_of) const {
+  std::optional<bool> counts(std::size_t operand, const Box3& where, const SideOf& side_of) const {
     bool is_certain = true;
     for (const Condition& c : paths_[operand].conditions) {
-      const Side side = side_of_node(c.node, side_of);
-      if (side == Side::Unknown) is_certain = false;
-      else if (side != c.wanted) return false;
+      const std::optional<bool> holds = c.holds(*this, where, side_of);
+      if (holds == false) return false;
+      is_certain = is_certain && holds.has_value();
     }
     return is_certain ? std::optional(true) : std::nullopt;
   }
 
  private:
   using NodeIndex = std::uint32_t;
-  /// A union or intersection of children, or an operand; `negated`: of all that is outside it.
+  /// A union or intersection of children, an operand, or one whose blend, the operand before it, is lent; `negated`: of
+  /// all that is outside it.
   struct Node {
-    enum class Kind { Operand, Union, Intersection } kind = Kind::Operand;
+    enum class Kind { Operand, Lender, Union, Intersection } kind = Kind::Operand;
     bool negated = false;
     std::uint32_t operand = 0;
     std::vector<NodeIndex> children;  ///< those that are sooner asked first
     double cost = 0;                  ///< to ask for its side, by its primitives
   };
-  /// That a node beside the way from an operand to the root leaves the decision to it.
+  /// That a node beside the way from an operand to the root leaves the decision to it; or, where no side is wanted, the
+  /// lender around a blend.
   struct Condition {
     NodeIndex node;
     Side wanted;
+
+    template <class SideOf>
+    std::optional<bool> holds(const SetExpression& all, const Box3& where, const SideOf& side_of) const {
+      if (wanted == Side::Unknown) return all.lent_by(all.nodes_[node]).decides(where);
+      const Side side = all.side_of_node(node, where, side_of);
+      return side == Side::Unknown ? std::nullopt : std::optional(side == wanted);
+    }
   };
   struct Path {
-    bool is_taken_away = false;
+    bool is_taken_away = false, is_lent = false;
     std::vector<Condition> conditions;
   };
   class Reader;
 
+  const BlendInTree& lent_by(const Node& node) const { return *operands_[node.operand].lent; }
+
   template <class SideOf>
-  Side side_of_node(NodeIndex index, const SideOf& side_of) const {
+  Side side_of_lender(const Node& node, const Box3& where, const SideOf& side_of) const {
+    const BlendInTree& lent = lent_by(node);
+    const std::size_t whole = node.operand, blend = whole - 1;
+    if (lent.decides(where) == true) return side_of(blend);
+    const Side side = lent.side(where, side_of(blend));
+    return side != Side::Unknown ? side : side_of(whole);
+  }
+
+  template <class SideOf>
+  Side side_of_node(NodeIndex index, const Box3& where, const SideOf& side_of) const {
     const Node& node = nodes_[index];
     Side side = Side::Unknown;
     if (node.kind == Node::Kind::Operand) {
       side = side_of(static_cast<std::size_t>(node.operand));
+    } else if (node.kind == Node::Kind::Lender) {
+      side = side_of_lender(node, where, side_of);
     } else {
       const Side decides = node.kind == Node::Kind::Union ? Side::Inside : Side::Outside;
       side = opposite(decides);
       for (const NodeIndex child : node.children) {
-        const Side of_child = side_of_node(child, side_of);
+        const Side of_child = side_of_node(child, where, side_of);
         if (of_child == decides) {
           side = decides;
           break;

@@ -19,6 +19,8 @@ constexpr double beside_box = 1e-3;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+Box3 around(const Vec3d& p, double rounding) { return Box3{p, p}.padded(rounding); }
+
 // By which places of a ray may be off.
 double rounding_at(const Ray& ray, double t) { return 0x1p-50 * (max_component(abs(ray.origin)) + std::fabs(t)); }
 
@@ -30,7 +32,8 @@ Result<std::unique_ptr<BooleanSolid>> BooleanSolid::make(FieldTree whole, const 
   for (std::size_t i = 0; i < expression.operands().size(); ++i) {
     const SetExpression::Operand& operand = expression.operands()[i];
     Result<std::unique_ptr<OperandSolid>> solid =
-        operand.blend != nullptr ? blend_solid(i) : as_operand(TreeSolid::make(operand.tree, of_object, bounds));
+        operand.blend != nullptr ? blend_solid(i)
+                                 : as_operand(TreeSolid::make(operand.tree, of_object, bounds, operand.lent));
     if (!solid) return solid.why();
     operands.push_back(std::move(*solid));
   }
@@ -47,6 +50,7 @@ BooleanSolid::BooleanSolid(FieldTree whole, const Box3& bounds, SetExpression ex
       element_of_(operands_.size()) {
   for (std::size_t i = 0; i < operands_.size(); ++i) {
     add_elements(i);
+    needed_.push_back(side_if_outside(i, bounds_) == Side::Outside);
     if (operands_[i]->primitive_count() > operands_[largest_]->primitive_count()) largest_ = i;
   }
 }
@@ -65,7 +69,10 @@ void BooleanSolid::add_elements(std::size_t operand) {
 std::optional<bool> BooleanSolid::counts_in(std::size_t operand, const Box3& box) const {
   const Box3 around = box.padded(beside_box * max_component(box.size()));
   if (!do_overlap(around, bounds_)) return false;
-  return expression_.counts(operand, [&](std::size_t other) { return operands_[other]->side_of(around); });
+  return expression_.counts(operand, around, [&](std::size_t other) {
+    // What is long to bound has been, as far as its blend and others tell.
+    return expression_.operands()[other].lent != nullptr ? Side::Unknown : operands_[other]->side_of(around);
+  });
 }
 
 // Beside a crease, where another operand's surface is nearer than fields are off, each of two crossings might take the
@@ -74,7 +81,7 @@ bool BooleanSolid::counts_at(std::size_t operand, const Ray& ray, double t) cons
   const Vec3d p = ray.at(t);
   const double rounding = rounding_at(ray, t);
   const auto side = [&](std::size_t other) { return side_of_operand(other, p, rounding); };
-  if (const auto counts = expression_.counts(operand, side)) return *counts;
+  if (const auto counts = expression_.counts(operand, around(p, rounding), side)) return *counts;
   const Side before = side_along(ray, t, -1), behind = side_along(ray, t, 1);
   if (before == Side::Outside && behind == Side::Inside && is_entered_later(operand, ray, t)) return false;
   return before != behind || before == Side::Unknown;
@@ -119,7 +126,7 @@ Side BooleanSolid::side_of_operand(std::size_t operand, const Vec3d& p, double r
 }
 
 Side BooleanSolid::side_of_whole(const Vec3d& p, double rounding) const {
-  return expression_.side([&](std::size_t i) { return side_of_operand(i, p, rounding); });
+  return expression_.side(around(p, rounding), [&](std::size_t i) { return side_of_operand(i, p, rounding); });
 }
 
 Box3 BooleanSolid::element_box(std::size_t element) const {
@@ -137,23 +144,30 @@ double BooleanSolid::value(const Vec3d& p) const { return marrow::value(whole_, 
 
 Side BooleanSolid::clear_side(const Vec3d& p) const {
   constexpr double clearly = 1e-3;
-  return expression_.side([&](std::size_t i) {
-    if (expression_.operands()[i].blend != nullptr) return operands_[i]->clear_side(p);
+  return expression_.side(around(p, 0), [&](std::size_t i) {
+    const SetExpression::Operand& operand = expression_.operands()[i];
+    if (operand.blend != nullptr) return operands_[i]->clear_side(p);
+    if (operand.lent != nullptr) return Side::Unknown;
     const double f = operands_[i]->value(p);
     if (f < 1 - clearly) return Side::Outside;
     return f > 1 + clearly ? Side::Inside : Side::Unknown;
   });
 }
 
-// Whether what is outside the operand is outside the whole.
-bool BooleanSolid::is_needed(std::size_t operand) const {
-  const auto side = [&](std::size_t i) { return i == operand ? Side::Outside : Side::Unknown; };
-  return expression_.side(side) == Side::Outside;
+// That of the whole where the operand is outside, whatever the others are.
+Side BooleanSolid::side_if_outside(std::size_t operand, const Box3& where) const {
+  return expression_.side(where, [&](std::size_t i) { return i == operand ? Side::Outside : Side::Unknown; });
+}
+
+// Whether what is outside the operand is outside the whole there.
+bool BooleanSolid::is_needed(std::size_t operand, const Vec3d& place) const {
+  if (needed_[operand] || !expression_.is_lent(operand)) return needed_[operand];
+  return side_if_outside(operand, around(place, 0)) == Side::Outside;
 }
 
 bool BooleanSolid::is_left_by(const Ray& ray) const {
   for (std::size_t i = 0; i < operands_.size(); ++i)
-    if (is_needed(i) && operands_[i]->is_left_by(ray)) return true;
+    if (is_needed(i, ray.at(ray.t_min)) && operands_[i]->is_left_by(ray)) return true;
   return false;
 }
 
@@ -193,14 +207,19 @@ std::optional<double> BooleanSolid::hit_in_part(const SolidPart& part, const Ray
   return hit(part_of_operand(part), ray, any, log);
 }
 
-// Where what is inside the whole is inside the operand, a ray that has begun outside the operand and comes into such a
-// part inside it has met the whole before, so that it matters no more what it meets here.
-bool BooleanSolid::is_traced_alone(const OperandPart& of) const { return of.all_counts && is_needed(of.operand); }
+// Of rays that begin outside the operand, and come into a part of it, where all counts, inside it: whether they have
+// met the whole before, so that it matters no more what they meet here. So it is where they have begun outside the
+// whole.
+bool BooleanSolid::has_met_before(const OperandPart& of, const Ray& ray) const {
+  if (!of.all_counts || !expression_.is_lent(of.operand)) return of.all_counts && needed_[of.operand];
+  const Vec3d begin = ray.at(ray.t_min);
+  return !bounds_.contains(begin) || is_needed(of.operand, begin);
+}
 
 // Alone the operand is traced by all its means. Rays that begin inside it may be outside the whole, and so are followed
 // from side to side.
 std::optional<double> BooleanSolid::hit(const OperandPart& of, const Ray& ray, bool any, ElementLog& log) const {
-  if (!is_traced_alone(of)) return crossing(of, ray, log);
+  if (!has_met_before(of, ray)) return crossing(of, ray, log);
   ElementLog alone = log;
   if (of.operand != largest_) alone.outside_from = infinity;
   const std::size_t visits_before = log.visits == nullptr ? 0 : log.visits->size();
@@ -223,7 +242,9 @@ std::optional<double> BooleanSolid::crossing(const OperandPart& of, const Ray& r
   return operands_[of.operand]->crossing(of.part, ray, filter, log);
 }
 
-bool BooleanSolid::traces_packets() const { return operands_[largest_]->traces_packets() && is_needed(largest_); }
+bool BooleanSolid::traces_packets() const {
+  return operands_[largest_]->traces_packets() && (needed_[largest_] || expression_.is_lent(largest_));
+}
 
 // Packets of what is largest, where it is traced alone; the rest ray by ray.
 void BooleanSolid::hits_in_parts(std::span<const LanesInPart> parts, const RayPacket& packet, bool any,
@@ -234,12 +255,16 @@ void BooleanSolid::hits_in_parts(std::span<const LanesInPart> parts, const RayPa
   together.reserve(parts.size());
   for (const auto& [solid, part, lanes] : parts) {
     const OperandPart of = part_of_operand(*part);
-    if (of.operand != largest_ || !is_traced_alone(of)) {
-      hits_one_by_one({{{solid, part, lanes}}}, packet, any, log);
-      continue;
-    }
+    LanesInPart by_itself{solid, part, {}}, in_company{&largest, nullptr, {}};
+    lanes.for_each([&](std::size_t i) {
+      const bool alone = of.operand != largest_ || !has_met_before(of, packet.ray(i));
+      (alone ? by_itself : in_company).lanes.add(i);
+    });
+    if (!by_itself.lanes.empty()) hits_one_by_one(std::span(&by_itself, 1), packet, any, log);
+    if (in_company.lanes.empty()) continue;
     together.push_back(of);
-    lanes_together.push_back({&largest, &together.back().part, lanes});
+    in_company.part = &together.back().part;
+    lanes_together.push_back(in_company);
   }
   if (together.empty()) return;
   std::array<std::size_t, RayPacket::size> visits_before;
@@ -295,7 +320,7 @@ void BooleanSolid::complete(std::size_t operand, const HitToDescribe& of, const 
   const auto side_at_start = [&](std::size_t i) {
     return i == operand && is_sure ? start : side_of_operand(i, hit.outside, 0);
   };
-  if (expression_.side(side_at_start) != Side::Outside) free_start(*of.ray, hit);
+  if (expression_.side(around(hit.outside, 0), side_at_start) != Side::Outside) free_start(*of.ray, hit);
 }
 
 // To one of several sides, the first of growing steps that is outside the whole.

@@ -65,8 +65,9 @@ class BooleanSolid final : public Solid {
   Side side_along(const Ray&, double t, double way) const;
   Side side_of_operand(std::size_t operand, const Vec3d&, double rounding) const;
   Side side_of_whole(const Vec3d&, double rounding) const;
-  bool is_needed(std::size_t operand) const;
-  bool is_traced_alone(const OperandPart&) const;
+  Side side_if_outside(std::size_t operand, const Box3& where) const;
+  bool is_needed(std::size_t operand, const Vec3d& place) const;
+  bool has_met_before(const OperandPart&, const Ray&) const;
   std::optional<double> hit(const OperandPart&, const Ray&, bool any, ElementLog&) const;
   std::optional<double> crossing(const OperandPart&, const Ray&, ElementLog&) const;
   void complete(std::size_t operand, const HitToDescribe&, const Element&) const;
@@ -76,7 +77,8 @@ class BooleanSolid final : public Solid {
   Box3 bounds_;
   SetExpression expression_;
   std::vector<std::unique_ptr<OperandSolid>> operands_;
-  std::size_t largest_ = 0;  // operand: what rays know of their beginnings from part to part is of this one
+  std::vector<bool> needed_;  // of operands: what is outside it is outside the whole, everywhere
+  std::size_t largest_ = 0;   // operand: what rays know of their beginnings from part to part is of this one
   std::vector<Element> elements_;
   std::vector<std::vector<std::uint32_t>> element_of_;  // of an operand's elements; none: nothing of it counts
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "field/blend/blend_field.h"
 #include "field/tree/tree_node.h"
 
 namespace marrow {
@@ -15,8 +16,9 @@ bool holds_blends(const FieldTree& tree) {
 
 }  // namespace
 
-Result<std::unique_ptr<TreeSolid>> TreeSolid::make(FieldTree tree, MaterialId of_object, const Box3& within) {
-  auto tracer = TreeTracer::make(std::move(tree), within);
+Result<std::unique_ptr<TreeSolid>> TreeSolid::make(FieldTree tree, MaterialId of_object, const Box3& within,
+                                                   std::shared_ptr<const BlendInTree> lent) {
+  auto tracer = TreeTracer::make(std::move(tree), within, std::move(lent));
   if (!tracer) return tracer.why();
   return std::unique_ptr<TreeSolid>(new TreeSolid(std::move(*tracer), of_object));
 }
@@ -103,6 +105,9 @@ FieldSample TreeSolid::sample(const Vec3d& p) const {
 
 double TreeSolid::value(const Vec3d& p) const { return marrow::value(tracer_.tree(), p); }
 
-std::size_t TreeSolid::primitive_count() const { return leaf_count(tracer_.tree()); }
+std::size_t TreeSolid::primitive_count() const {
+  const BlendInTree* lent = tracer_.lent();
+  return leaf_count(tracer_.tree()) - (lent != nullptr ? lent->blend()->size() : 0);
+}
 
 }  // namespace marrow

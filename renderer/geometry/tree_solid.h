@@ -13,7 +13,8 @@ class TreeSolid final : public OperandSolid {
  public:
   /// As TreeTracer::make().
   static Result<std::unique_ptr<TreeSolid>> make(FieldTree, MaterialId of_object,
-                                                 const Box3& within = TreeTracer::everywhere);
+                                                 const Box3& within = TreeTracer::everywhere,
+                                                 std::shared_ptr<const BlendInTree> lent = nullptr);
 
   std::size_t element_count() const override { return tracer_.cell_count(); }
   Box3 element_box(std::size_t element) const override { return tracer_.cell_box(element); }
@@ -27,6 +28,7 @@ class TreeSolid final : public OperandSolid {
   Side side_of(const Box3&) const override;
   double field_error() const override;
   std::optional<Vec3d> start_inside(const HitToDescribe&) const override;
+  /// Without those of a blend that is lent.
   std::size_t primitive_count() const override;
   std::size_t bytes() const override { return tracer_.bytes(); }
 

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "tests/stress/drawing.h"
 #include "tests/stress/tree_drafts.h"
+#include "tests/trace/random_scene.h"
 #include "tests/tree/random_tree.h"
 
 namespace marrow::test {
@@ -99,6 +101,22 @@ inline std::uint32_t ball(BodyDraft& d, Random& random, const Vec3d& center, dou
 }
 inline std::uint32_t tube(BodyDraft& d, Random& random, const Vec3d& from, const Vec3d& to, double radius) {
   return d.leaf(Cylinder{.from = from, .to = to, .radius = radius, .potential = potential(random)});
+}
+inline std::uint32_t some_body(BodyDraft& d, Random& random) {
+  switch (random.whole(0, 4)) {
+    case 0:
+      return box(d, random, random.vector(0.3), {0.6, 2, 0.6});
+    case 1:
+      return tube(d, random, {0, -1.2, 0}, {0, 1.2, 0}, random.between(0.05, 0.5));
+    case 2:
+      return d.leaf(random_node<Torus>(0, random));
+    case 3: {
+      const Setting setting{.degree = random.whole(3, 6), .alpha = random.between(-1, 1.5)};
+      return d.leaf(BlendLeaf{std::make_shared<const BlendField>(random_scene(random, setting, 2))});
+    }
+    default:
+      return d.any(0);
+  }
 }
 
 }  // namespace marrow::test

@@ -10,6 +10,7 @@
 #include "tests/field/varied_blend.h"
 #include "tests/stress/body_draft.h"
 #include "tests/stress/odd_tree_drafts.h"
+#include "tests/stress/strand_drafts.h"
 #include "tests/trace/random_scene.h"
 
 namespace marrow::test {
@@ -66,23 +67,6 @@ void creases(BodyDraft& d, Random& random) {
   if (maybe(random)) one = d.combined({one, d.any(0)});
   if (maybe(random, 0.2)) d.bodies = pair;
   else d.bodies = {one};
-}
-
-std::uint32_t some_body(BodyDraft& d, Random& random) {
-  switch (random.whole(0, 4)) {
-    case 0:
-      return box(d, random, random.vector(0.3), {0.6, 2, 0.6});
-    case 1:
-      return tube(d, random, {0, -1.2, 0}, {0, 1.2, 0}, random.between(0.05, 0.5));
-    case 2:
-      return d.leaf(random_node<Torus>(0, random));
-    case 3: {
-      const Setting setting{.degree = random.whole(3, 6), .alpha = random.between(-1, 1.5)};
-      return d.leaf(BlendLeaf{std::make_shared<const BlendField>(random_scene(random, setting, 2))});
-    }
-    default:
-      return d.any(0);
-  }
 }
 
 // Cuts of bends, tips of tapers, many turns of twists, one in another.
@@ -228,111 +212,6 @@ void crowd(BodyDraft& d, Random& random) {
   }
 }
 
-// Strands of many skeletons: far ones become polynomials in parts of space.
-BlendField strands(Random& random) {
-  BlendField blend;
-  blend.degree = random.whole(3, 7);
-  if (maybe(random, 0.3)) blend.kernel = KernelFamily::Cauchy;
-  blend.alpha = random.between(0, 1.5);
-  const double thickness = power_of_ten(random, -2.3, -1);
-  for (int strand = random.whole(12, 40); strand > 0; --strand) {
-    Vec3d at = random.vector(1), way = random.vector(0.15);
-    for (int i = 0; i < 8; ++i) {
-      const Vec3d next = at + way;
-      const double from = thickness * random.between(0.5, 1.5), to = maybe(random) ? from : 0.5 * from;
-      if (maybe(random, 0.1)) blend.points.add({at, 2 * from}, {});
-      blend.segments.add({at, next, from, to}, {});
-      way += random.vector(0.08);
-      at = next;
-    }
-  }
-  return blend;
-}
-
-// The same by distance, under any kernel: a strand is a polyline, or, as a file of a neuron, all of them together.
-BlendField by_distance(BlendField blend, Random& random) {
-  const std::size_t of_strand = maybe(random, 0.3) ? blend.segments.size() : 8;
-  for (std::size_t i = 0; i < blend.segments.size(); ++i)
-    blend.segments.strands.push_back(static_cast<std::uint32_t>(i / of_strand));
-  blend.distance_segments = std::exchange(blend.segments, {});
-  if (!maybe(random, 0.3)) return blend;
-  blend.kernel = KernelFamily::Compact;
-  blend.kernel_shape = random.between(1.2, 3);
-  return blend;
-}
-
-// Cut, warped, beside another one or by itself.
-void hundreds(BodyDraft& d, Random& random) {
-  BlendField blend = strands(random);
-  d.focus_size = 4 * blend.segments.skeletons[0].radius_from;
-  for (std::size_t i = 0; i < blend.segments.size(); i += 5) d.places.push_back(blend.segments.skeletons[i].to);
-  if (maybe(random, 0.3)) blend = by_distance(std::move(blend), random);
-  std::uint32_t one = d.leaf(BlendLeaf{std::make_shared<const BlendField>(std::move(blend))});
-  if (maybe(random, 0.6)) one = d.combined({one, some_body(d, random)});
-  if (maybe(random, 0.3)) one = d.one_of<Bend, Taper, Twist, Shear>({one});
-  if (maybe(random, 0.2))
-    one = d.combined({one, d.leaf(BlendLeaf{std::make_shared<const BlendField>(strands(random))})});
-  d.bodies = {one};
-}
-
-// A blend that its own tracer knows, in some place.
-std::uint32_t traced_strands(BodyDraft& d, Random& random) {
-  BlendField blend = strands(random);
-  blend.kernel = KernelFamily::Inverse;
-  d.focus_size = std::min(d.focus_size, 4 * blend.segments.skeletons[0].radius_from);
-  for (std::size_t i = 0; i < blend.segments.size(); i += 5) d.places.push_back(blend.segments.skeletons[i].to);
-  const std::uint32_t leaf = d.leaf(BlendLeaf{std::make_shared<const BlendField>(std::move(blend))});
-  if (maybe(random)) return leaf;
-  const Vec3d sizes = maybe(random) ? Vec3d{1, 1, 1} : Vec3d{random.between(0.5, 1.5), 1, random.between(0.5, 1.5)};
-  return d.placed(Affine::translate(random.vector(0.2)) *
-                      Affine::rotate(normalize(random.vector(1)), random.between(-3, 3)) * Affine::scale(sizes),
-                  leaf);
-}
-
-// What cuts: a plane, a ball, a shell, strands, or any body.
-std::uint32_t cutter(BodyDraft& d, Random& random) {
-  switch (random.whole(0, 5)) {
-    case 0:
-      return d.leaf(
-          Plane{.point = random.vector(0.4), .normal = normalize(random.vector(1)), .potential = potential(random)});
-    case 1:
-      return ball(d, random, random.vector(0.7), random.between(0.1, 0.9));
-    case 2: {
-      const double thickness = power_of_ten(random, -4, -1);
-      return d.of(Difference{}, {ball(d, random, {}, 0.7), ball(d, random, {}, 0.7 - thickness)});
-    }
-    case 3:
-      return traced_strands(d, random);
-    default:
-      return some_body(d, random);
-  }
-}
-
-// Crisp and sharp set operations, one on the other, on blends of many skeletons.
-void cuts(BodyDraft& d, Random& random) {
-  std::uint32_t one = traced_strands(d, random);
-  for (int i = random.whole(1, 3); i > 0; --i) {
-    const std::uint32_t other = cutter(d, random);
-    switch (random.whole(0, 5)) {
-      case 0:
-        one = d.one_of<Intersection, SharpIntersection>({one, other});
-        break;
-      case 1:
-        one = d.one_of<Difference, SharpDifference>({other, one});
-        break;
-      case 2:
-        one = d.one_of<CrispUnion, SharpUnion>({other, one});
-        break;
-      case 3:
-        one = d.of(Difference{}, {one, other});
-        break;
-      default:
-        one = d.one_of<Difference, SharpDifference>({one, other});
-    }
-  }
-  d.bodies = {one};
-}
-
 using Draw = void (*)(BodyDraft&, Random&);
 constexpr std::array<Draw, usual_tree_kinds> draws{any_nodes, creases, warps,        threads,
                                                    supports,  kernels, convolutions, crowd};
@@ -344,6 +223,7 @@ TreeDraft draft_tree(std::size_t kind, const Affine& place, Random& random) {
   if (kind < usual_tree_kinds) draws[kind](draft, random);
   else if (kind == hundreds_kind) hundreds(draft, random);
   else if (kind == cuts_kind) cuts(draft, random);
+  else if (kind == joins_kind) joins(draft, random);
   else draw_odd_bodies(kind - usual_tree_kinds, draft, random);
   return draft.finished(place);
 }

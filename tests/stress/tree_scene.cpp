@@ -30,7 +30,7 @@ Placement random_placement_of_scene(Random& random) {
 // Blends under set operations as a scene has them, all else by the general tracer.
 std::unique_ptr<Solid> solid_of(const FieldTree& tree, std::size_t kind) {
   constexpr std::size_t few = 50;
-  if (kind == cuts_kind)
+  if (has_traced_blends(kind))
     if (auto solid = boolean_solid_of(tree, few, MaterialId{})) return solid;
   auto solid = TreeSolid::make(tree, MaterialId{});
   if (!solid) return nullptr;

@@ -29,8 +29,10 @@ class TreeScene {
   double size() const { return size_; }  ///< half of the extent of the cells
   /// By what share of the field sums may be off, and what is no error of theirs: of blends that have a tracer of their
   /// own 1e-5, which is its tolerance.
-  double sum_error() const { return kind_ == cuts_kind ? 1e-6 : 2e-7; }
-  double noticed() const { return kind_ == cuts_kind ? 1e-5 : 1e-6; }
+  double sum_error() const { return has_traced_blends(kind_) ? 1e-6 : 2e-7; }
+  double noticed() const { return has_traced_blends(kind_) ? 1e-5 : 1e-6; }
+  /// The same as a length: 2e-5 radii of what is thin in the scene. Fields may be steps.
+  double noticed_beside() const { return has_traced_blends(kind_) ? 2e-5 * focus_size_ / focus_over_radius : 0; }
   double value(const Vec3d& p) const { return marrow::value(tree_, p); }
 
   /// The box of an element, or all.

@@ -1,4 +1,5 @@
-// tree_stress [--trees N] [--odd N] [--hundreds N] [--cuts N] [--rays N] [--lines N] [--first SCENE] [--threads N]:
+// tree_stress [--trees N] [--odd N] [--hundreds N] [--cuts N] [--joins N] [--rays N] [--lines N] [--first SCENE]
+// [--threads N]:
 // hard rays through general trees, every one judged. Prints what was counted, and exits 1 if a surface was missed or
 // made up, or a start lies inside. Scene numbers are seeds; each odd scene, and each of blends of hundreds of
 // skeletons, takes as many rays and lines as each of the others, which share them evenly.
@@ -20,7 +21,8 @@ using namespace marrow;
 using namespace marrow::test;
 
 struct Job {
-  std::uint64_t trees = 200, odd = 60, hundreds = 0, cuts = 0, rays = 20'000, lines = 2'000, first = 1, threads = 2;
+  std::uint64_t trees = 200, odd = 60, hundreds = 0, cuts = 0, joins = 0, rays = 20'000, lines = 2'000, first = 1,
+                threads = 2;
 };
 
 struct Outcome {
@@ -35,7 +37,9 @@ std::uint64_t scene_number(const Job& job, std::uint64_t i) {
   if (i < job.odd) return first_odd_tree + job.first + i;
   i -= job.odd;
   if (i < job.hundreds) return first_tree_of_hundreds + job.first + i;
-  return first_tree_of_cuts + job.first + i - job.hundreds;
+  i -= job.hundreds;
+  if (i < job.cuts) return first_tree_of_cuts + job.first + i;
+  return first_tree_of_joins + job.first + i - job.cuts;
 }
 
 Outcome run_scene(const Job& job, std::uint64_t number) {
@@ -74,9 +78,9 @@ bool is_held(const TreeVerdict& v) {
 }
 
 bool parse(int argc, char** argv, Job& job) {
-  const NumberOption options[] = {{"--trees", job.trees}, {"--odd", job.odd},        {"--hundreds", job.hundreds},
-                                  {"--cuts", job.cuts},   {"--rays", job.rays},      {"--lines", job.lines},
-                                  {"--first", job.first}, {"--threads", job.threads}};
+  const NumberOption options[] = {{"--trees", job.trees}, {"--odd", job.odd},     {"--hundreds", job.hundreds},
+                                  {"--cuts", job.cuts},   {"--joins", job.joins}, {"--rays", job.rays},
+                                  {"--lines", job.lines}, {"--first", job.first}, {"--threads", job.threads}};
   return read_numbers(argc, argv, options) && job.trees > 0 && job.threads > 0;
 }
 
@@ -86,12 +90,12 @@ int main(int argc, char** argv) {
   Job job;
   if (!parse(argc, argv, job)) {
     std::fprintf(stderr,
-                 "tree_stress [--trees N] [--odd N] [--hundreds N] [--cuts N] [--rays N] [--lines N] [--first SCENE] "
-                 "[--threads N]\n");
+                 "tree_stress [--trees N] [--odd N] [--hundreds N] [--cuts N] [--joins N] [--rays N] [--lines N] "
+                 "[--first SCENE] [--threads N]\n");
     return 2;
   }
   const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, job.threads);
-  std::vector<Outcome> outcomes(job.trees + job.odd + job.hundreds + job.cuts);
+  std::vector<Outcome> outcomes(job.trees + job.odd + job.hundreds + job.cuts + job.joins);
   tbb::parallel_for(std::size_t{0}, outcomes.size(),
                     [&](std::size_t i) { outcomes[i] = run_scene(job, scene_number(job, i)); });
   Outcome all;
@@ -100,9 +104,12 @@ int main(int argc, char** argv) {
     for (std::size_t f = 0; f < tree_family_count; ++f) all.families[f].add(o.families[f]);
     for (std::size_t k = 0; k < tree_kind_names.size(); ++k) all.kinds[k].add(o.kinds[k]);
   }
-  fmt::print("trees {} to {}, {} odd ones from {} on, {} of hundreds from {} on, {} of cuts from {} on\n", job.first,
-             job.first + job.trees - 1, job.odd, first_odd_tree + job.first, job.hundreds,
-             first_tree_of_hundreds + job.first, job.cuts, first_tree_of_cuts + job.first);
+  fmt::print(
+      "trees {} to {}, {} odd ones from {} on, {} of hundreds from {} on, {} of cuts from {} on, {} of joins "
+      "from {} on\n",
+      job.first, job.first + job.trees - 1, job.odd, first_odd_tree + job.first, job.hundreds,
+      first_tree_of_hundreds + job.first, job.cuts, first_tree_of_cuts + job.first, job.joins,
+      first_tree_of_joins + job.first);
   for (std::size_t f = 0; f < tree_family_count; ++f) {
     print(tree_family_names[f], all.families[f]);
     total.add(all.families[f]);

@@ -112,7 +112,8 @@ void judge_hit(const TreeScene& scene, const Ray& ray, const SurfaceHit& hit, co
   const double slack = slack_of(scene, ray, hit.t, slopes);
   if (!changes_near(along, hit.t, slack)) {
     const double rounded = 16 * rounding::ulp * max_component(abs(hit.position)) * slopes.steepness;
-    const bool is_off = !(std::fabs(slopes.value - 1) < scene.noticed() + rounded);
+    const bool is_off = !(std::fabs(slopes.value - 1) < scene.noticed() + rounded) &&
+                        !(scene.value(hit.position - hit.normal * scene.noticed_beside()) >= 1);
     ++(is_off ? v.phantom : v.grazing);
     if (is_off) note(v, scene, ray, family, "phantom", slopes.value - 1);
   }
@@ -123,7 +124,7 @@ void judge_hit(const TreeScene& scene, const Ray& ray, const SurfaceHit& hit, co
   if (!from_afar || !(slopes.along > 0.1 * slopes.steepness)) return;
   judge_limits(scene, ray, hit, slack, family, v);
   // Beside an edge the field may fall to both sides from just below 1, however steep: such hits are in `grazing`.
-  if (scene.kind() == cuts_kind && !changes_near(along, hit.t, slack)) return;
+  if (has_traced_blends(scene.kind()) && !changes_near(along, hit.t, slack)) return;
   judge_ulps(scene, along, hit, slopes, v);
 }
 

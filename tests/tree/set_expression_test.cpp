@@ -47,6 +47,8 @@ std::uint32_t operations(Random& random, RandomTree& tree, int levels) {
 
 bool stands_alone(const BlendField&) { return true; }
 
+constexpr Box3 anywhere{};
+
 double value_of(const SetExpression::Operand& operand, const Vec3d& p) {
   if (operand.blend == nullptr) return value(operand.tree, p);
   return corrected_value(*operand.blend, operand.world_from_blend.inverse().point(p));
@@ -82,13 +84,13 @@ TEST(SetExpression, TellsTheSideOfTheTree) {
       for (const auto& operand : expression.operands())
         sides.push_back(value_of(operand, p) >= 1 ? Side::Inside : Side::Outside);
       const auto side_of = [&](std::size_t k) { return sides[k]; };
-      const Side side = expression.side(side_of);
+      const Side side = expression.side(Box3{p, p}, side_of);
       EXPECT_EQ(side, value(tree, p) >= 1 ? Side::Inside : Side::Outside);
       inside += side == Side::Inside;
       for (std::size_t k = 0; k < sides.size(); ++k) {
         const auto flipped = [&](std::size_t j) { return j == k ? opposite(sides[j]) : sides[j]; };
-        const bool changes = expression.side(flipped) != side;
-        EXPECT_EQ(expression.counts(k, side_of), changes);
+        const bool changes = expression.side(Box3{p, p}, flipped) != side;
+        EXPECT_EQ(expression.counts(k, Box3{p, p}, side_of), changes);
         EXPECT_TRUE(!changes || (side == sides[k]) != expression.is_taken_away(k));
         decided += changes;
       }
@@ -113,13 +115,13 @@ TEST(SetExpression, IsNotWrongWhereSidesAreUnknown) {
     }
     const auto side_known = [&](std::size_t k) { return known[k]; };
     const auto side_of_all = [&](std::size_t k) { return all[k]; };
-    if (const Side side = expression.side(side_known); side != Side::Unknown) {
+    if (const Side side = expression.side(anywhere, side_known); side != Side::Unknown) {
       ++told;
-      EXPECT_EQ(side, expression.side(side_of_all));
+      EXPECT_EQ(side, expression.side(anywhere, side_of_all));
     }
     for (std::size_t k = 0; k < known.size(); ++k)
-      if (const auto counts = expression.counts(k, side_known)) {
-        EXPECT_EQ(*counts, expression.counts(k, side_of_all));
+      if (const auto counts = expression.counts(k, anywhere, side_known)) {
+        EXPECT_EQ(*counts, expression.counts(k, anywhere, side_of_all));
       }
   }
   EXPECT_GT(told, 50);

@@ -58,8 +58,9 @@ Interval clip(const Box3& cell, const Ray& ray) {
 }
 
 // The cube of the box, with a little room.
-std::unique_ptr<const TreeCell> TreeCell::root(const FieldTree& tree, const Box3& box, std::uint32_t record) {
-  std::unique_ptr<TreeCell> cell(new TreeCell(box.center(), 0.5 * max_component(box.size()) * (1 + 1e-6), 0));
+std::unique_ptr<const TreeCell> TreeCell::root(const FieldTree& tree, const Box3& box, std::uint32_t record,
+                                               const BlendInTree* lent) {
+  std::unique_ptr<TreeCell> cell(new TreeCell(box.center(), 0.5 * max_component(box.size()) * (1 + 1e-6), 0, lent));
   cell->tree_ = std::make_shared<const FieldTree>(localized(tree, cell->box().padded(cell->half_ * validity), record));
   return cell;
 }
@@ -75,11 +76,12 @@ const TreeCell* TreeCell::octant(std::size_t i) const {
   return octants_[i].get([&] { return std::make_unique<const Octant>(make_octant(i)); }).get();
 }
 
-// The octant, unless bounds prove all of it outside or inside.
+// The octant, unless bounds prove all of it outside or inside, or it is traced otherwise.
 std::unique_ptr<const TreeCell> TreeCell::make_octant(std::size_t i) const {
   std::unique_ptr<TreeCell> cell(
-      new TreeCell(octant_center(center_, half_, static_cast<int>(i)), half_ / 2, level_ + 1));
+      new TreeCell(octant_center(center_, half_, static_cast<int>(i)), half_ / 2, level_ + 1, lent_));
   const Box3 around = cell->box().padded(cell->half_ * validity);
+  if (lent_ != nullptr && lent_->decides_around(around)) return {};
   // As the larger cube sums it: enough to drop most of what can be dropped, before anything is made for it.
   if (!value(*tree_, span_of(around)).contains(1)) return {};
   FieldTree own = localized(*tree_, around);

@@ -9,6 +9,7 @@
 #include "field/base/lazy.h"
 #include "field/math/ray.h"
 #include "field/number/interval.h"
+#include "field/tree/blend_in_tree.h"
 #include "field/tree/field_tree.h"
 
 namespace marrow {
@@ -20,8 +21,10 @@ Interval clip(const Box3&, const Ray&);
 /// A cube that may hold surface. What it holds is a function of its place alone. Safe to use from many threads.
 class TreeCell {
  public:
-  /// All of a box with the field of a tree, or of what stands below a record of it.
-  static std::unique_ptr<const TreeCell> root(const FieldTree&, const Box3&, std::uint32_t record);
+  /// All of a box with the field of a tree, or of what stands below a record of it. `lent`, which must outlive it, or
+  /// null: a blend of the tree that is traced by itself, so that no part is made where it decides.
+  static std::unique_ptr<const TreeCell> root(const FieldTree&, const Box3&, std::uint32_t record,
+                                              const BlendInTree* lent);
 
   Box3 box() const { return Box3{center_, center_}.padded(half_); }
   /// Equal to the whole in the box and a little beyond.
@@ -33,7 +36,8 @@ class TreeCell {
   int level() const { return level_; }
 
   static constexpr std::size_t octant_count = 8;
-  /// One of them, made when it is first asked for; null where bounds prove all of it outside or inside.
+  /// One of them, made when it is first asked for; null where bounds prove all of it outside or inside, or
+  /// a blend decides that is traced by itself.
   const TreeCell* octant(std::size_t i) const;
   Box3 octant_box(std::size_t i) const;
 
@@ -44,13 +48,15 @@ class TreeCell {
   std::size_t bytes() const;
 
  private:
-  TreeCell(const Vec3d& center, double half, int level) : center_(center), half_(half), level_(level) {}
+  TreeCell(const Vec3d& center, double half, int level, const BlendInTree* lent)
+      : center_(center), half_(half), level_(level), lent_(lent) {}
   std::unique_ptr<const TreeCell> make_octant(std::size_t i) const;
 
   Vec3d center_;
   double half_;
   int level_;
   bool is_leaf_ = false;
+  const BlendInTree* lent_;
   std::shared_ptr<const FieldTree> tree_;  ///< may serve several cells
   using Octant = std::unique_ptr<const TreeCell>;
   std::array<Lazy<Octant>, octant_count> octants_;

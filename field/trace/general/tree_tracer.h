@@ -32,8 +32,10 @@ struct TreeHit {
 /// Safe to use from many threads.
 class TreeTracer {
  public:
-  /// Of the surface `within` a box. Errors: a field whose surface is not bounded there, or may be anywhere.
-  static Result<TreeTracer> make(FieldTree, const Box3& within = everywhere);
+  /// Of the surface `within` a box, but where it is that of a blend which is `lent`. Errors: a field whose surface is
+  /// not bounded there, or may be anywhere.
+  static Result<TreeTracer> make(FieldTree, const Box3& within = everywhere,
+                                 std::shared_ptr<const BlendInTree> lent = nullptr);
   static constexpr Box3 everywhere{{-Box3::inf, -Box3::inf, -Box3::inf}, {Box3::inf, Box3::inf, Box3::inf}};
 
   std::size_t cell_count() const { return cells_.size(); }
@@ -48,6 +50,8 @@ class TreeTracer {
   SurfacePoint surface_at(std::size_t cell, const Vec3d& position, const Vec3d& along = {}) const;
 
   const FieldTree& tree() const { return tree_; }
+  /// Null: none.
+  const BlendInTree* lent() const { return lent_.get(); }
   /// Of the leaf that counts most at a hit; invalid: the object's own.
   MaterialId material_at(std::size_t cell, const Vec3d& position) const;
   /// Bounds of the surface.
@@ -60,7 +64,8 @@ class TreeTracer {
     std::uint32_t member;  ///< record of the whole tree
     const TreeCell* part;  ///< equal to the member in the box and a little beyond; null: the member itself
   };
-  explicit TreeTracer(FieldTree tree) : tree_(std::move(tree)), only_material_(only_material(tree_)) {}
+  TreeTracer(FieldTree tree, std::shared_ptr<const BlendInTree> lent)
+      : tree_(std::move(tree)), lent_(std::move(lent)), only_material_(only_material(tree_)) {}
   void divide(const Member&);
   static double shortest_step(const Cell&);
   std::optional<Vec3d> outside_by_slope(const Cell&, const Vec3d& position, const UnitVec3& normal, double slope) const;
@@ -78,6 +83,7 @@ class TreeTracer {
   auto with_field_near(const Cell&, const Vec3d& p, const Use&) const;
 
   FieldTree tree_;
+  std::shared_ptr<const BlendInTree> lent_;
   std::optional<MaterialId> only_material_;  ///< of all leaves
   Box3 bounds_;
   std::vector<Member> members_;  ///< of a union, where there are few enough to ask all of them at a crossing
