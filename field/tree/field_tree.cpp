@@ -137,7 +137,7 @@ class Restriction {
     const FieldTree::Record& old = tree_.records()[index];
     const TreeNode& node = tree_.node(old);
     select(node, children);
-    if (kept_.size() == 1 && is_idle_with_one(node)) return kept_[0];
+    if (kept_.size() == 1 && is_idle_with_one(node)) return kept_[0].value == Interval(0) ? Part{} : kept_[0];
     if (kept_.empty() && old.child_count > 0) return {};
     values_.clear();
     for (const Part& c : kept_) values_.push_back(c.value);
@@ -165,9 +165,14 @@ class Restriction {
     return std::visit(
         []<class Node>(const Node&) {
           return is_any_of<Node, CrispUnion, Sum, Ricci, Intersection, Difference, SoftUnion, SoftIntersection,
-                           SoftDifference, SharpUnion, SharpIntersection, SharpDifference>;
+                           SoftDifference, SharpUnion, SharpIntersection, SharpDifference, Contact>;
         },
         node);
+  }
+
+  template <class Node>
+  static constexpr bool ignores_zeros(const Node&) {
+    return requires { requires Node::ignores_zeros; };
   }
 
   // The operands that count. An operator that needs all of its operands in place gets zeros as they are.
@@ -180,7 +185,9 @@ class Restriction {
           else if constexpr (std::same_as<Node, Intersection>)
             keep_least(children, [](const Part& c) { return c.value; });
           else if constexpr (std::same_as<Node, Difference>) keep_rest(children);
+          else if constexpr (is_any_of<Node, SoftUnion, SoftIntersection>) keep_joined(n, children);
           else if constexpr (is_any_of<Node, SoftDifference, SharpDifference>) keep_touching(n, children);
+          else if constexpr (std::same_as<Node, Contact>) keep_in_contact(n, children);
           else if constexpr (requires { requires Node::ignores_zeros; })
             std::copy_if(children.begin(), children.end(), std::back_inserter(kept_),
                          [](const Part& c) { return c.record != Part::none; });
@@ -221,6 +228,29 @@ class Restriction {
       has_zero = has_zero || is_zero;
       kept_.push_back(in_place(c));
     }
+  }
+
+  // What is folded into one, but for what leaves the rest as it is, or the rest where it is left by that. Of a union
+  // what is 0 all over the box counts as nothing.
+  void keep_joined(const auto& node, std::span<const Part> children) {
+    Interval rest(0);
+    for (const Part& c : children) {
+      const bool is_first = kept_.empty();
+      if (ignores_zeros(node) && c.record == Part::none) continue;
+      if (!is_first && node.spares(rest, c.value)) continue;
+      if (!is_first && node.replaces(rest, c.value)) kept_.clear();
+      const Interval both[] = {rest, c.value};
+      rest = kept_.empty() ? c.value : node.value(std::span<const Interval>(both));
+      kept_.push_back(in_place(c));
+    }
+  }
+
+  void keep_in_contact(const Contact& node, std::span<const Part> children) {
+    values_.clear();
+    for (const Part& c : children) values_.push_back(c.value);
+    const auto only = node.only(values_);
+    if (only && children[*only].record != Part::none) return void(kept_.push_back(children[*only]));
+    for (const Part& c : children) kept_.push_back(in_place(c));
   }
 
   // What is folded onto the first operand without touching it anywhere in the box.

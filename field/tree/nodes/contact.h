@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -58,6 +59,20 @@ struct Contact {
       most = max(most, x);
     }
     return max(most + contact_term(bulge, second), second + contact_term(bulge, most));
+  }
+
+  /// The body whose field the value is, all over these intervals.
+  std::optional<std::size_t> only(std::span<const Interval> f) const {
+    for (std::size_t k = 0; k < (first_only ? 1 : f.size()); ++k) {
+      const double bulge_of_others = contact_term(bulge, f[k]).hi;
+      const auto leaves = [&](const Interval& other) {
+        return other.hi < from() && (first_only || (Interval(other.hi) + Interval(bulge_of_others)).hi <= f[k].lo);
+      };
+      bool is_only = true;
+      for (std::size_t i = 0; i < f.size(); ++i) is_only = is_only && (i == k || leaves(f[i]));
+      if (is_only) return k;
+    }
+    return {};
   }
 
  private:

@@ -48,11 +48,19 @@ struct SoftUnion {
     for (const X& x : f.subspan(1)) whole = both(whole, x);
     return whole;
   }
+  /// Whether a further child leaves what is before it as it is, or takes its place, all over these intervals.
+  bool spares(const Interval& rest, const Interval& f) const {
+    return f.hi <= (Interval(is_round() ? on_first : 1) * rest).lo;
+  }
+  bool replaces(const Interval& rest, const Interval& f) const {
+    return rest.hi <= (Interval(is_round() ? on_second : 1) * f).lo;
+  }
 
  private:
+  bool is_round() const { return on_first < 1 && on_second < 1; }
   template <Number X>
   X both(const X& x, const X& y) const {
-    return on_first < 1 && on_second < 1 ? EllipseCorner{on_second, on_first}.value(x, y) : max(x, y);
+    return is_round() ? EllipseCorner{on_second, on_first}.value(x, y) : max(x, y);
   }
 };
 
@@ -79,8 +87,18 @@ struct SoftIntersection {
   /// Of two of them.
   template <Number X>
   X both(const X& x, const X& y) const {
-    return on_first > 1 && on_second > 1 ? EllipseCorner{on_second, on_first}.value(x, y) : min(x, y);
+    return is_round() ? EllipseCorner{on_second, on_first}.value(x, y) : min(x, y);
   }
+  /// As of a union.
+  bool spares(const Interval& rest, const Interval& f) const {
+    return f.lo >= (Interval(is_round() ? on_first : 1) * rest).hi;
+  }
+  bool replaces(const Interval& rest, const Interval& f) const {
+    return rest.lo >= (Interval(is_round() ? on_second : 1) * f).hi;
+  }
+
+ private:
+  bool is_round() const { return on_first > 1 && on_second > 1; }
 };
 
 /// The first child without the others: the intersection with their complements 2 - f.
@@ -105,7 +123,7 @@ struct SoftDifference {
     for (const X& x : f.subspan(1)) rest = common.both(rest, max(complement(x), X(0.0)));
     return rest;
   }
-  /// Whether a child with this field leaves all of the rest as it is: 2 - f above (2 - on_first) times the rest.
+  /// As of a union: 2 - f is above (2 - on_first) times the rest.
   bool spares(const Interval& rest, const Interval& f) const {
     return complement(f).lo >= std::max(0.0, (Interval(2 - on_first) * rest).hi);
   }
