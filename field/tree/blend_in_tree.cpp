@@ -48,12 +48,13 @@ std::optional<Affine> way_up(const FieldTree& tree, std::uint32_t leaf) {
   return map;
 }
 
-std::optional<Leaf> only_leaf(const FieldTree& tree, const std::function<bool(const BlendField&)>& wanted) {
+std::optional<Leaf> largest_leaf(const FieldTree& tree, const std::function<bool(const BlendField&)>& wanted) {
   std::optional<std::uint32_t> leaf;
+  std::size_t most = 0;
   for (std::uint32_t i = 0; i < tree.records().size(); ++i) {
     const auto* blend = std::get_if<BlendLeaf>(&tree.node(tree.records()[i]));
-    if (blend == nullptr || !wanted(*blend->field)) continue;
-    if (leaf) return {};
+    if (blend == nullptr || blend->field->size() <= most || !wanted(*blend->field)) continue;
+    most = blend->field->size();
     leaf = i;
   }
   if (!leaf) return {};
@@ -94,7 +95,7 @@ std::array<Box3, 8> octants(const Box3& box) {
 
 std::shared_ptr<const BlendInTree> BlendInTree::of(const FieldTree& tree,
                                                    const std::function<bool(const BlendField&)>& wanted) {
-  const auto leaf = only_leaf(tree, wanted);
+  const auto leaf = largest_leaf(tree, wanted);
   if (!leaf || leaf->record == tree.root()) return nullptr;
   const auto& blend = std::get<BlendLeaf>(tree.node(tree.records()[leaf->record])).field;
   std::shared_ptr<BlendInTree> made(new BlendInTree(tree, leaf->record, blend, leaf->tree_from_blend));
@@ -134,21 +135,43 @@ void BlendInTree::find_undecided() {
   decided_ = 1 - left / volume(of_blend);
 }
 
-// With that of the blend given.
-Interval BlendInTree::field(const Box3& box, const Interval& of_blend) const {
-  thread_local tree::Machine<Interval, Interval> machine;
-  const Vec3<Interval> p{{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
-  return machine.run(tree_, FieldTree::whole, p, Interval(0),
-                     [&](std::uint32_t record, const Vec3<Interval>& at, std::span<const Interval> children) {
-                       return record == leaf_ ? of_blend
-                                              : tree::value_of_record(tree_, tree_.records()[record], at, children);
-                     });
-}
+// The field of the whole in a box, with that of the blend given.
+class BlendInTree::Asked {
+ public:
+  Asked(const BlendInTree& of, const Box3& box)
+      : of_(of), p_{{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}} {
+    leaves().clear();
+  }
+  Interval field(const Interval& of_blend) {
+    thread_local tree::Machine<Interval, Interval> machine;
+    std::size_t next = 0;
+    return machine.run(of_.tree_, FieldTree::whole, p_, Interval(0),
+                       [&](std::uint32_t record, const Vec3<Interval>& at, std::span<const Interval> children) {
+                         if (record == of_.leaf_) return of_blend;
+                         const FieldTree::Record& r = of_.tree_.records()[record];
+                         if (!children.empty()) return tree::value_of_record(of_.tree_, r, at, children);
+                         // Trees are gone through in one order, whatever the fields are.
+                         if (next == leaves().size())
+                           leaves().push_back(tree::value_of_record(of_.tree_, r, at, children));
+                         return leaves()[next++];
+                       });
+  }
+
+ private:
+  // Those of the other leaves, which are found once.
+  static std::vector<Interval>& leaves() {
+    thread_local std::vector<Interval> values;
+    return values;
+  }
+
+  const BlendInTree& of_;
+  Vec3<Interval> p_;
+};
 
 std::optional<bool> BlendInTree::asked(const Box3& box) const {
-  const Interval near = field(box, {1 - tolerance, 1 + tolerance});
-  if (!near.contains(1)) return false;
-  if (field(box, {0, 1 - tolerance}).hi < 1 && field(box, {1 + tolerance, infinity}).lo > 1) return true;
+  Asked whole(*this, box);
+  if (!whole.field({1 - tolerance, 1 + tolerance}).contains(1)) return false;
+  if (whole.field({0, 1 - tolerance}).hi < 1 && whole.field({1 + tolerance, infinity}).lo > 1) return true;
   return {};
 }
 
@@ -160,7 +183,8 @@ std::optional<bool> BlendInTree::decides(const Box3& box) const {
 bool BlendInTree::decides_around(const Box3& box) const { return decides(box.padded(beside_)) == true; }
 
 Side BlendInTree::side(const Box3& box, Side of_blend) const {
-  const Interval f = field(box, {of_blend == Side::Inside ? 1.0 : 0.0, of_blend == Side::Outside ? 1.0 : infinity});
+  const Interval f =
+      Asked(*this, box).field({of_blend == Side::Inside ? 1.0 : 0.0, of_blend == Side::Outside ? 1.0 : infinity});
   if (f.hi < 1) return Side::Outside;
   return f.lo > 1 ? Side::Inside : Side::Unknown;
 }

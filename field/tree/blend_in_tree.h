@@ -24,8 +24,8 @@ struct BlendField;
 /// Immutable; safe to use from many threads.
 class BlendInTree {
  public:
-  /// Of the only blend in a tree that is wanted; null where there are none or several, where it occurs twice, or stands
-  /// below anything but operators and placements, or where it decides about less than half of the space around it.
+  /// Of the largest blend in a tree that is wanted; null where there is none, where it occurs twice, or stands below
+  /// anything but operators and placements, or where it decides about less than half of the space around it.
   static std::shared_ptr<const BlendInTree> of(const FieldTree&, const std::function<bool(const BlendField&)>& wanted);
 
   const FieldTree& tree() const { return tree_; }
@@ -46,7 +46,7 @@ class BlendInTree {
 
  private:
   BlendInTree(FieldTree, std::uint32_t leaf, std::shared_ptr<const BlendField>, const Affine& tree_from_blend);
-  Interval field(const Box3&, const Interval& of_blend) const;
+  class Asked;
   std::optional<bool> asked(const Box3&) const;
   void find_undecided();
 

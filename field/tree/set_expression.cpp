@@ -73,8 +73,7 @@ class SetExpression::Reader {
   // What stands below a record, counted on every way to it.
   struct Below {
     double records = 1, primitives = 0;
-    double alone = 0;            // blends that stand alone
-    double beside = 0;           // primitives but those
+    double alone = 0;            // primitives of the largest blend that stands alone
     bool is_told_apart = false;  // such blends are operands
   };
 
@@ -84,17 +83,15 @@ class SetExpression::Reader {
     if (const auto* blend = std::get_if<BlendLeaf>(&node)) {
       below.primitives = static_cast<double>(blend->field->size());
       below.is_told_apart = stands_alone_(*blend->field);
-      below.alone = below.is_told_apart ? 1 : 0;
+      below.alone = below.is_told_apart ? below.primitives : 0;
     } else if (children(record).empty()) {
       below.primitives = 1;
     }
-    below.beside = below.is_told_apart ? 0 : below.primitives;
     for (const std::uint32_t child : children(record)) {
       const Below& of = below_[child];
       below.records += of.records;
       below.primitives += of.primitives;
-      below.alone += of.alone;
-      below.beside += of.beside;
+      below.alone = std::max(below.alone, of.alone);
       below.is_told_apart = below.is_told_apart || of.is_told_apart;
     }
     if (!children(record).empty() && !is_operation(node))
@@ -102,8 +99,8 @@ class SetExpression::Reader {
     return below;
   }
   static bool may_lend(const Below& below) {
-    return below.alone == 1 && below.records <= static_cast<double>(most_nodes) &&
-           below.beside <= static_cast<double>(most_beside);
+    return below.records <= 2 * static_cast<double>(most_beside) &&
+           below.primitives - below.alone <= static_cast<double>(most_beside);
   }
   std::shared_ptr<const BlendInTree> lent_by(const FieldTree& tree) const {
     return BlendInTree::of(tree, stands_alone_);
@@ -150,9 +147,8 @@ class SetExpression::Reader {
     Node made;
     made.kind = Node::Kind::Lender;
     made.negated = negated;
-    const double of_blend = below_[record].primitives - below_[record].beside;
     made.children.push_back(
-        append(Operand{whole.lent->blend(), whole.lent->tree_from_blend(), {}, {}}, of_blend, false));
+        append(Operand{whole.lent->blend(), whole.lent->tree_from_blend(), {}, {}}, below_[record].alone, false));
     made.children.push_back(append(std::move(whole), below_[record].primitives, false));
     made.operand = made_.nodes_[made.children.back()].operand;
     return append(std::move(made));

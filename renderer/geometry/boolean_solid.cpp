@@ -68,11 +68,13 @@ void BooleanSolid::add_elements(std::size_t operand) {
 // Whether surface of an operand in a box is that of the whole; nothing where it is so in places, or not known.
 std::optional<bool> BooleanSolid::counts_in(std::size_t operand, const Box3& box) const {
   const Box3 around = box.padded(beside_box * max_component(box.size()));
-  if (!do_overlap(around, bounds_)) return false;
-  return expression_.counts(operand, around, [&](std::size_t other) {
+  const BlendInTree* lent = expression_.operands()[operand].lent.get();
+  if (!do_overlap(around, bounds_) || (lent != nullptr && lent->decides_around(box))) return false;
+  const auto counts = expression_.counts(operand, around, [&](std::size_t other) {
     // What is long to bound has been, as far as its blend and others tell.
     return expression_.operands()[other].lent != nullptr ? Side::Unknown : operands_[other]->side_of(around);
   });
+  return lent != nullptr && counts == true && lent->decides(around) != false ? std::nullopt : counts;
 }
 
 // Beside a crease, where another operand's surface is nearer than fields are off, each of two crossings might take the
@@ -80,6 +82,8 @@ std::optional<bool> BooleanSolid::counts_in(std::size_t operand, const Box3& box
 bool BooleanSolid::counts_at(std::size_t operand, const Ray& ray, double t) const {
   const Vec3d p = ray.at(t);
   const double rounding = rounding_at(ray, t);
+  if (const auto& lent = expression_.operands()[operand].lent; lent != nullptr && lent->decides_around({p, p}))
+    return false;
   const auto side = [&](std::size_t other) { return side_of_operand(other, p, rounding); };
   if (const auto counts = expression_.counts(operand, around(p, rounding), side)) return *counts;
   const Side before = side_along(ray, t, -1), behind = side_along(ray, t, 1);

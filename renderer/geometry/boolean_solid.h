@@ -3,6 +3,8 @@
 // Its surface consists of pieces of those of its operands. Each of them is traced by itself, where it is not certain
 // that the others leave nothing of it; a crossing counts where the whole changes sides with the operand, as the others
 // stand there.   [Roth 1982, with the side at a place in the place of intervals along the ray]
+// A blend under another operation, such as a soft union, is an operand where it decides by itself; all that stands
+// below the operation is one, too, and counts elsewhere.
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,8 @@
 
 namespace marrow {
 
-/// Blends of many skeletons under crisp or sharp unions, intersections and differences.
+/// Blends of many skeletons under crisp or sharp unions, intersections and differences, and under other operators that
+/// leave most of them as they are.
 struct CombinedBlends {
   FieldTree whole;
   Box3 bounds;  ///< of its surface

@@ -123,7 +123,7 @@ Ray ray_at(Random& random, double distance) {
 TEST(BooleanSolid, IsMetWhereTheTreeIs) {
   Random random(401);
   int hits = 0, differ = 0, inside = 0, starts_inside = 0;
-  for (int i_scene = 0; i_scene < 4 * kinds; ++i_scene) {
+  for (int i_scene = 0; i_scene < 2 * kinds; ++i_scene) {
     auto [tree, solid] = scene(random, i_scene % kinds);
     const auto surfaces = surfaces_of(std::move(solid));
     const auto general = surfaces_of(std::move(*TreeSolid::make(tree, MaterialId{})));

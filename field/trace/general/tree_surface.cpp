@@ -6,8 +6,9 @@
 namespace marrow {
 namespace {
 
-// By which sums over points are off (field/tree/README.md), and those over all primitives.
-constexpr double error_of_local_sums = 2e-7, rounding_of_sums = 1e-12;
+// By which sums over points are off (field/tree/README.md), those over all primitives, and where the surface goes on as
+// another tracer has it, that of a blend that is lent.
+constexpr double error_of_local_sums = 2e-7, rounding_of_sums = 1e-12, error_beside_lent = 2e-5;
 constexpr double longest_step = 1e-3;  // of the cell, beside a hit
 
 }  // namespace
@@ -21,7 +22,7 @@ Interval TreeTracer::field_enclosed(const Cell& c, const Vec3d& p) const {
 // below 1, or is so by more than `likely`.
 std::optional<Vec3d> TreeTracer::outside_along(const Cell& c, const Vec3d& position, const Vec3d& direction,
                                                double likely) const {
-  const double off = c.part != nullptr ? error_of_local_sums : rounding_of_sums;
+  const double off = error_at(c);
   std::optional<Vec3d> summed;
   const double shortest = shortest_step(c);
   for (double step = shortest; step < std::max(longest_step * c.box.size().x, 64 * shortest); step *= 4) {
@@ -34,6 +35,11 @@ std::optional<Vec3d> TreeTracer::outside_along(const Cell& c, const Vec3d& posit
   return summed;
 }
 
+double TreeTracer::error_at(const Cell& c) const {
+  if (lent_ != nullptr) return error_beside_lent;
+  return c.part != nullptr ? error_of_local_sums : rounding_of_sums;
+}
+
 double TreeTracer::shortest_step(const Cell& c) {
   return 4 * rounding::ulp * std::max(largest_coordinate(c.box), c.box.size().x);
 }
@@ -41,7 +47,7 @@ double TreeTracer::shortest_step(const Cell& c) {
 // The same at once, where the slope tells how far it is: at nearly all hits.
 std::optional<Vec3d> TreeTracer::outside_by_slope(const Cell& c, const Vec3d& position, const UnitVec3& normal,
                                                   double slope) const {
-  const double off = c.part != nullptr ? error_of_local_sums : rounding_of_sums;
+  const double off = error_at(c);
   const double step = std::max(1.5 * off / slope, shortest_step(c));
   if (!(step < longest_step * c.box.size().x)) return {};
   const Vec3d p = position + normal.vec() * step;
