@@ -36,6 +36,41 @@ TEST(SpawnedRays, StartOutside) {
   EXPECT_LT(sum / hits, 2e-4);
 }
 
+// Rays that go on inward from a hit: those that begin at it, on either side of the surface by rounding, meet it where
+// they begin or go on to where they leave, and a millionth behind it it is passed.
+TEST(SpawnedRays, LeaveBehindWhatTheyGoThrough) {
+  constexpr double steep = 0.5, near = 1e-4;
+  Random random(113);
+  int hits = 0, met_again = 0, met_behind = 0;
+  double most_off = 0;
+  for (const int n : {3, 5, 8})
+    for (const double alpha : {contact_alpha(n), std::numbers::pi / 2}) {
+      const SolidScene scene({placed(random_scene(random, {n, alpha}, 6))});
+      for (int i = 0; i < 1500; ++i) {
+        const Ray ray = chord(random);
+        const auto hit = scene.surfaces().first_hit(ray);
+        if (!hit || dot(hit->normal, ray.direction) > -steep) continue;
+        ++hits;
+        Vec3d inward = random_direction(random);
+        if (dot(inward, hit->normal) > 0) inward = -inward;
+        for (const Ray& on :
+             {Ray{hit->position, normalize(inward - hit->normal.vec())}, Ray{ray.origin, ray.direction, hit->t}}) {
+          const auto next = scene.surfaces().first_hit(on);
+          if (!next || next->t - on.t_min > near || dot(next->normal, on.direction) > 0) continue;
+          ++met_again;
+          most_off = std::max(most_off, std::fabs(scene.value(next->position) - 1));
+        }
+        const auto behind = scene.surfaces().first_hit({ray.origin, ray.direction, hit->t + 1e-6});
+        met_behind += behind && behind->t - hit->t < near && dot(behind->normal, ray.direction) < 0;
+      }
+    }
+  std::cout << "  " << hits << " hits, " << met_again << " met again, field off 1 by " << most_off << " at most, "
+            << met_behind << " met a millionth behind\n";
+  EXPECT_GT(hits, 2000);
+  EXPECT_LT(most_off, 5e-6);
+  EXPECT_LE(met_behind, hits / 1000);
+}
+
 // One point, or one segment of constant radius under the plain sum: the sublevel sets of sums of d^-n along a straight
 // skeleton are convex.
 std::vector<PlacedBlend> convex_bodies(Random& random) {

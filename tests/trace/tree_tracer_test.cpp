@@ -151,6 +151,33 @@ TEST(TreeTracer, GoesThroughACommonFaceButNotAcrossAGap) {
     }
 }
 
+// Each box has an edge there, and the whole a plane.
+TEST(TreeTracer, HasANormalWhereMembersMeet) {
+  Random random(46);
+  FieldDescription field;
+  const FieldNodeId left = add(field, Box{.center = {}, .size = {1, 1, 1}, .potential = {}}),
+                    right = add(field, Box{.center = {1, 0, 0}, .size = {1, 1, 1}, .potential = {}});
+  field.root = field.add({.what = Union{{left, right}}, .where = {}});
+  const TreeTracer tracer = tracer_of(field);
+  int hits = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double y = random.between(-0.4, 0.4), beside = i % 2 == 0 ? 0 : std::pow(10, random.between(-15, -9));
+    const Vec3d to{0.5 + beside, y, 0.5};
+    // Along the joint, aslant in its plane, or from anywhere.
+    const Vec3d from = to + Vec3d{i % 3 == 2 ? random.between(-2, 2) : 0, i % 3 == 0 ? 0 : random.between(-2, 2), 5};
+    const Ray ray{.origin = from, .direction = normalize(to - from)};
+    for (std::size_t cell = 0; cell < tracer.cell_count(); ++cell) {
+      CellLog log;
+      const auto hit = tracer.first_hit(cell, ray, false, log);
+      if (!hit || std::fabs(ray.at(hit->t).z - 0.5) > 1e-9) continue;
+      ++hits;
+      const SurfacePoint surface = tracer.surface_at(cell, ray.at(hit->t), ray.direction);
+      EXPECT_GT(surface.normal.vec().z, 0.999) << "beside by " << beside << ", ray " << i;
+    }
+  }
+  EXPECT_GT(hits, 300);
+}
+
 struct BoxAndBall {
   Affine turn;
   TreeTracer tracer;

@@ -10,6 +10,9 @@ namespace {
 // another tracer has it, that of a blend that is lent.
 constexpr double error_of_local_sums = 2e-7, rounding_of_sums = 1e-12, error_beside_lent = 2e-5;
 constexpr double longest_step = 1e-3;  // of the cell, beside a hit
+// As near to 1 another member's field is where they meet; and how far beside it, over the cell, sums tell which is
+// nearer.
+constexpr double of_joint = 1e-6, beside_joint = 1e-8;
 
 }  // namespace
 
@@ -54,6 +57,21 @@ std::optional<Vec3d> TreeTracer::outside_by_slope(const Cell& c, const Vec3d& po
   return field_enclosed(c, p).hi < 1 - off ? std::optional(p) : std::nullopt;
 }
 
+// Where members meet, each may have an edge in a surface that is smooth: that of the whole, a little beside it on the
+// ray, outside.
+UnitVec3 TreeTracer::normal_at_joint(const Cell& c, const Vec3d& position, const Vec3d& along,
+                                     const UnitVec3& of_member) const {
+  using X = Jet<double, 3>;
+  const double step = std::max(beside_joint * c.box.size().x, 64 * shortest_step(c));
+  for (const double way : {-step, step}) {
+    const Vec3d p = position + along * way;
+    const X f = field_near(c, p, Vec3<X>{X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)});
+    const Vec3d outward{-f.slope[0], -f.slope[1], -f.slope[2]};
+    if (f.value < 1 && length(outward) > 0) return normalize(outward);
+  }
+  return of_member;
+}
+
 SurfacePoint TreeTracer::surface_at(std::size_t cell, const Vec3d& position, const Vec3d& along) const {
   using X = Jet<double, 3>;
   const Cell& c = cells_[cell];
@@ -62,7 +80,7 @@ SurfacePoint TreeTracer::surface_at(std::size_t cell, const Vec3d& position, con
                               [&](const FieldTree& tree, std::uint32_t record) { return value(tree, at, record); });
   const X others = largest_of_others(c.member, at);
   const auto outward = [](const X& g) { return normalize(Vec3d{-g.slope[0], -g.slope[1], -g.slope[2]}); };
-  const UnitVec3 normal = outward(f);
+  const UnitVec3 normal = others.value > 1 - of_joint ? normal_at_joint(c, position, along, outward(f)) : outward(f);
   if (const auto outside = outside_by_slope(c, position, normal, length(Vec3d{f.slope[0], f.slope[1], f.slope[2]})))
     return {.normal = normal, .outside = *outside, .around = {}};
   // Beside another member: away from both, or from one and back.

@@ -68,6 +68,7 @@ class TreeTracer {
       : tree_(std::move(tree)), lent_(std::move(lent)), only_material_(only_material(tree_)) {}
   void divide(const Member&);
   double error_at(const Cell&) const;
+  UnitVec3 normal_at_joint(const Cell&, const Vec3d& position, const Vec3d& along, const UnitVec3& of_member) const;
   static double shortest_step(const Cell&);
   std::optional<Vec3d> outside_by_slope(const Cell&, const Vec3d& position, const UnitVec3& normal, double slope) const;
   std::optional<Vec3d> outside_along(const Cell&, const Vec3d& position, const Vec3d& direction, double likely) const;

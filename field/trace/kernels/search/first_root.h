@@ -101,6 +101,15 @@ inline RootOf<float> exit_in(const BlockView& block, const LocalRay& ray, Run<fl
 // be outside for it is then no more than 1e-5 deep.
 inline constexpr float clearly_inside = 5e-6F;
 
+// Where the field rises along the ray by this much of what it would towards a source, a ray that begins on the surface,
+// as summed on its inner side, is on its way in: all that comes behind will find it inside. A crossing that has just
+// been left behind is not met again.
+inline constexpr float surely_rising = 0.01F;
+template <Angle Rule, class F>
+inline MaskOf<F> goes_in(const SampleOf<Rule, F>& begin) {
+  return (begin.nominal < 0.0F) & (begin.scaled_slope * begin.distance < -surely_rising);
+}
+
 // Whether the ray is inside at t, where a run begins, by the coarse level where that can tell. Where it is hardly so
 // the exact field tells how the ray began.
 template <Angle Rule>
@@ -134,7 +143,7 @@ inline MaskOf<F> leave_surface(const BlockView& block, const BlocksOf<F>& blocks
   if (!any(rays)) return away;
   Search<Rule, F> start(march, query.t0, end);
   const SampleOf<Rule, F> first = march.sample(query.t0, rays);
-  const Mask inside = rays & (first.nominal < -clearly_inside), outside = rays & !inside;
+  const Mask inside = rays & ((first.nominal < -clearly_inside) | goes_in(first)), outside = rays & !inside;
   root.hit = inside;
   root.enters_inside = inside;
   root.t = select(inside, query.t0, root.t);

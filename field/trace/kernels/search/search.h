@@ -221,7 +221,8 @@ struct Search {
     const Mask holds = rays & bracketed();
     if (any(holds)) {
       const F estimate = estimated_root();
-      root = select(holds, select((estimate >= front) & (estimate <= right), estimate, 0.5F * (front + right)), root);
+      const F nearest = min_of(max_of(estimate, front), right);
+      root = select(holds, select(estimate < infinity, nearest, 0.5F * (front + right)), root);
     }
     const Mask touch = rays & !holds;
     if (!any(touch)) return holds;
