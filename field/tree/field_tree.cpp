@@ -171,9 +171,9 @@ class Restriction {
   }
 
   template <class Node>
-  static constexpr bool ignores_zeros(const Node&) {
-    return requires { requires Node::ignores_zeros; };
-  }
+  static constexpr bool ignores_zeros = requires {
+    requires Node::ignores_zeros;
+  };
 
   // The operands that count. An operator that needs all of its operands in place gets zeros as they are.
   void select(const TreeNode& node, std::span<const Part> children) {
@@ -188,7 +188,7 @@ class Restriction {
           else if constexpr (is_any_of<Node, SoftUnion, SoftIntersection>) keep_joined(n, children);
           else if constexpr (is_any_of<Node, SoftDifference, SharpDifference>) keep_touching(n, children);
           else if constexpr (std::same_as<Node, Contact>) keep_in_contact(n, children);
-          else if constexpr (requires { requires Node::ignores_zeros; })
+          else if constexpr (ignores_zeros<Node>)
             std::copy_if(children.begin(), children.end(), std::back_inserter(kept_),
                          [](const Part& c) { return c.record != Part::none; });
           else
@@ -232,11 +232,12 @@ class Restriction {
 
   // What is folded into one, but for what leaves the rest as it is, or the rest where it is left by that. Of a union
   // what is 0 all over the box counts as nothing.
-  void keep_joined(const auto& node, std::span<const Part> children) {
+  template <class Node>
+  void keep_joined(const Node& node, std::span<const Part> children) {
     Interval rest(0);
     for (const Part& c : children) {
       const bool is_first = kept_.empty();
-      if (ignores_zeros(node) && c.record == Part::none) continue;
+      if (ignores_zeros<Node> && c.record == Part::none) continue;
       if (!is_first && node.spares(rest, c.value)) continue;
       if (!is_first && node.replaces(rest, c.value)) kept_.clear();
       const Interval both[] = {rest, c.value};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <utility>
 
 #include "field/tree/tree_node.h"
@@ -57,12 +58,13 @@ class SetExpression::Reader {
 
   // None where there is more than an expression is for.
   std::optional<SetExpression> read(std::uint32_t root) {
-    if (!below_[root].is_told_apart) return {};
+    if (!is_told_apart(root)) return {};
     made_ = {};
     entered_ = 0;
     too_large_ = false;
     const NodeIndex node = add(root, Affine{}, false);
-    if (too_large_) return {};
+    const auto is_blend = [](const Operand& operand) { return operand.blend != nullptr; };
+    if (too_large_ || std::ranges::none_of(made_.operands_, is_blend)) return {};
     made_.root_ = node;
     made_.paths_.resize(made_.operands_.size());
     made_.find_paths(node, false, {});
@@ -73,8 +75,8 @@ class SetExpression::Reader {
   // What stands below a record, counted on every way to it.
   struct Below {
     double records = 1, primitives = 0;
-    double alone = 0;            // primitives of the largest blend that stands alone
-    bool is_told_apart = false;  // such blends are operands
+    double alone = 0;                // primitives of the largest blend that stands alone
+    bool may_be_told_apart = false;  // such blends are operands, as far as it is known
   };
 
   Below look_below(std::uint32_t record) const {
@@ -82,8 +84,8 @@ class SetExpression::Reader {
     Below below;
     if (const auto* blend = std::get_if<BlendLeaf>(&node)) {
       below.primitives = static_cast<double>(blend->field->size());
-      below.is_told_apart = stands_alone_(*blend->field);
-      below.alone = below.is_told_apart ? below.primitives : 0;
+      below.may_be_told_apart = stands_alone_(*blend->field);
+      below.alone = below.may_be_told_apart ? below.primitives : 0;
     } else if (children(record).empty()) {
       below.primitives = 1;
     }
@@ -92,18 +94,29 @@ class SetExpression::Reader {
       below.records += of.records;
       below.primitives += of.primitives;
       below.alone = std::max(below.alone, of.alone);
-      below.is_told_apart = below.is_told_apart || of.is_told_apart;
+      below.may_be_told_apart = below.may_be_told_apart || of.may_be_told_apart;
     }
-    if (!children(record).empty() && !is_operation(node))
-      below.is_told_apart = below.is_told_apart && may_lend(below) && lent_by(part_of_tree(tree_, {{record}}, {}));
+    if (below.records > 2 * static_cast<double>(most_beside) ||
+        below.primitives - below.alone > static_cast<double>(most_beside))
+      below.may_be_told_apart = below.may_be_told_apart && (children(record).empty() || is_operation(node));
     return below;
   }
-  static bool may_lend(const Below& below) {
-    return below.records <= 2 * static_cast<double>(most_beside) &&
-           below.primitives - below.alone <= static_cast<double>(most_beside);
+
+  // Another operator is where it lends its blend.
+  bool is_told_apart(std::uint32_t record) {
+    if (!below_[record].may_be_told_apart) return false;
+    const bool is_lender = !children(record).empty() && !is_operation(tree_.node(tree_.records()[record]));
+    return !is_lender || lends(record);
   }
-  std::shared_ptr<const BlendInTree> lent_by(const FieldTree& tree) const {
-    return BlendInTree::of(tree, stands_alone_);
+
+  // Found out once, of some hundred records: each takes some thousand questions.
+  bool lends(std::uint32_t record) {
+    const auto [known, is_new] = lends_.try_emplace(record, false);
+    if (!is_new) return known->second;
+    asked_ += 1 + (below_[record].primitives - below_[record].alone) / 16;
+    known->second =
+        asked_ < most_asked && BlendInTree::of(part_of_tree(tree_, {{record}}, {}), stands_alone_) != nullptr;
+    return known->second;
   }
 
   template <class... Kinds>
@@ -141,7 +154,7 @@ class SetExpression::Reader {
   // The blend first, then all that holds it.
   NodeIndex add_lender(std::uint32_t record, const Affine& map, bool negated) {
     Operand whole{nullptr, {}, part_of_tree(tree_, {{record}}, map), {}};
-    whole.lent = lent_by(whole.tree);
+    whole.lent = BlendInTree::of(whole.tree, stands_alone_);
     too_large_ = too_large_ || whole.lent == nullptr;  // as rounding has it
     if (too_large_) return 0;
     Node made;
@@ -164,7 +177,7 @@ class SetExpression::Reader {
     if (too_large_) return;
     std::vector<std::uint32_t> rest;
     for (const std::uint32_t child : of) {
-      if (below_[child].is_told_apart) to.children.push_back(add(child, map, negated));
+      if (is_told_apart(child)) to.children.push_back(add(child, map, negated));
       else rest.push_back(child);
     }
     // Taken away is what is in any of them.
@@ -204,6 +217,9 @@ class SetExpression::Reader {
   const FieldTree& tree_;
   const StandsAlone& stands_alone_;
   std::vector<Below> below_;  // of records
+  std::map<std::uint32_t, bool> lends_;
+  static constexpr double most_asked = 256;
+  double asked_ = 0;
   SetExpression made_;
   std::size_t entered_ = 0;  // records, so that no chain of them is followed too far
   bool too_large_ = false;
