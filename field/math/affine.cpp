@@ -40,6 +40,12 @@ Affine Affine::inverse() const {
   return a;
 }
 
+Box3 Affine::box_around(const Box3& box) const {
+  Box3 around;
+  for (const Vec3d& p : corners_of(box)) around.include(point(p));
+  return around;
+}
+
 std::optional<double> Affine::similarity() const {
   const double s2 = length_squared(columns[0]);
   const double tolerance = 1e-12 * s2;

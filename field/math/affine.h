@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "field/math/box3.h"
 #include "field/math/vec3.h"
 
 namespace marrow {
@@ -21,6 +22,8 @@ struct Affine {
   Vec3d vector(const Vec3d& v) const { return columns[0] * v.x + columns[1] * v.y + columns[2] * v.z; }
   /// Maps a covector (gradient, normal) of b to one of a: transposed linear part.
   Vec3d transposed(const Vec3d& g) const { return {dot(columns[0], g), dot(columns[1], g), dot(columns[2], g)}; }
+  /// Around all that the points of the box are mapped to. Precondition: it is not empty.
+  Box3 box_around(const Box3&) const;
   double determinant() const { return dot(columns[0], cross(columns[1], columns[2])); }
   /// Precondition: determinant() is not 0.
   Affine inverse() const;

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "field/number/places_in.h"
 #include "field/program/field_program.h"
 #include "field/tree/blend_values.h"
 #include "field/tree/tree_node.h"
@@ -70,7 +71,7 @@ FieldTree tree_of(const PlacedBlend& part) {
 }
 
 Interval value_bounds(const FieldProgram& program, const Box3& box) {
-  const Vec3<Interval> p{{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
+  const Vec3<Interval> p = places_in(box);
   Interval bounds(0);
   bool is_first = true;
   const auto add = [&](const Interval& part) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "field/blend/angle/alpha_sample.h"
+#include "field/number/places_in.h"
 #include "field/program/field_program.h"
 #include "field/skeleton/second_order.h"
 
@@ -35,14 +36,14 @@ class RampedField : public AlphaSource {
 
   // A ramp is monotone.
   Interval bounds(const Box3& box) const override {
-    const Interval v = enclosed<Interval>(span_of(box));
+    const Interval v = enclosed<Interval>(places_in(box));
     const double a = ramp_(v.lo), b = ramp_(v.hi);
     return {rounding::down(std::min(a, b), 8), rounding::up(std::max(a, b), 8)};
   }
 
   Vec3<Interval> slopes(const Box3& box) const override {
     using X = Jet<Interval, 3>;
-    const Vec3<Interval> p = span_of(box);
+    const Vec3<Interval> p = places_in(box);
     const X v = enclosed<X>({X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)});
     const double least = std::min(ramp_.from[0], ramp_.from[1]), most = std::max(ramp_.from[0], ramp_.from[1]);
     if (v.value.hi < least || v.value.lo > most) return {Interval(0), Interval(0), Interval(0)};
@@ -52,9 +53,6 @@ class RampedField : public AlphaSource {
   }
 
  private:
-  static Vec3<Interval> span_of(const Box3& box) {
-    return {{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
-  }
   double slope_of_ramp() const { return (ramp_.to[1] - ramp_.to[0]) / (ramp_.from[1] - ramp_.from[0]); }
   template <Number X>
   X enclosed(const Vec3<X>& p) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "field/blend/bounds/blend_bounds.h"
+#include "field/number/places_in.h"
 #include "field/tree/machine.h"
 
 namespace marrow {
@@ -62,12 +63,6 @@ std::optional<Leaf> largest_leaf(const FieldTree& tree, const std::function<bool
   return map ? std::optional(Leaf{*leaf, *map}) : std::nullopt;
 }
 
-Box3 placed(const Affine& map, const Box3& box) {
-  Box3 around;
-  for (const Vec3d& p : corners_of(box)) around.include(map.point(p));
-  return around;
-}
-
 // No direction is stretched more.
 double most_stretch(const Affine& map) {
   const auto& [x, y, z] = map.columns;
@@ -114,11 +109,11 @@ BlendInTree::BlendInTree(FieldTree tree, std::uint32_t leaf, std::shared_ptr<con
       bounds_(surface_bounds(tree_)),
       decided_(0),
       beside_(1e-3 * largest_radius(*blend_) * most_stretch(tree_from_blend)) {
-  bounds_.include(placed(tree_from_blend_, blend_extent(*blend_, 1)));
+  bounds_.include(tree_from_blend_.box_around(blend_extent(*blend_, 1)));
 }
 
 void BlendInTree::find_undecided() {
-  const Box3 of_blend = placed(tree_from_blend_, blend_extent(*blend_, 1));
+  const Box3 of_blend = tree_from_blend_.box_around(blend_extent(*blend_, 1));
   std::vector<std::pair<Box3, int>> open{{bounds_, 0}};
   double left = 0;
   while (!open.empty()) {
@@ -138,10 +133,7 @@ void BlendInTree::find_undecided() {
 // The field of the whole in a box, with that of the blend given.
 class BlendInTree::Asked {
  public:
-  Asked(const BlendInTree& of, const Box3& box)
-      : of_(of), p_{{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}} {
-    leaves().clear();
-  }
+  Asked(const BlendInTree& of, const Box3& box) : of_(of), p_(places_in(box)) { leaves().clear(); }
   Interval field(const Interval& of_blend) {
     thread_local tree::Machine<Interval, Interval> machine;
     std::size_t next = 0;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "field/blend/bounds/blend_bounds.h"
+#include "field/number/places_in.h"
 #include "field/tree/machine.h"
 
 namespace marrow {
@@ -293,7 +294,7 @@ class Restriction {
 };
 
 FieldTree restriction(const FieldTree& tree, const Box3& box, std::uint32_t below, bool with_local_blends) {
-  const Vec3<Interval> p{{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
+  const Vec3<Interval> p = places_in(box);
   Restriction restriction(tree, with_local_blends);
   tree::Machine<Interval, Part> machine;
   const Part root = machine.run(tree, below, p, Part{},

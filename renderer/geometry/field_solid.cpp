@@ -24,13 +24,6 @@ InBlend& in_blend() {
   return *own;
 }
 
-// Around the placed box.
-Box3 placed(const Affine& map, const Box3& box) {
-  Box3 around;
-  for (const Vec3d& p : corners_of(box)) around.include(map.point(p));
-  return around;
-}
-
 std::size_t visits_so_far(const ElementLog& log) { return log.visits == nullptr ? 0 : log.visits->size(); }
 
 }  // namespace
@@ -86,7 +79,7 @@ bool FieldSolid::is_left_by(const Ray& ray) const {
   return ray.around != nullptr && tracer_->leaves_surface(to_local(ray).ray);
 }
 
-Box3 FieldSolid::to_world(const Box3& local) const { return in_world_ ? local : placed(world_from_local_, local); }
+Box3 FieldSolid::to_world(const Box3& local) const { return in_world_ ? local : world_from_local_.box_around(local); }
 
 // Its end is raised by more than products and quotients round: the exact one is asked for in the world's t.
 FieldSolid::LocalRay FieldSolid::to_local(const Ray& ray) const {
@@ -161,7 +154,7 @@ std::optional<double> FieldSolid::crossing(const SolidPart& part, const Ray& ray
 }
 
 Side FieldSolid::side_of(const Box3& box) const {
-  return tracer_->clear_side(in_world_ ? box : placed(local_from_world_, box));
+  return tracer_->clear_side(in_world_ ? box : local_from_world_.box_around(box));
 }
 
 std::optional<Vec3d> FieldSolid::start_inside(const HitToDescribe& of) const {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "field/blend/blend_field.h"
+#include "field/number/places_in.h"
 #include "field/tree/tree_node.h"
 
 namespace marrow {
@@ -75,9 +76,7 @@ std::optional<double> TreeSolid::crossing(const SolidPart& part, const Ray& ray,
 }
 
 Side TreeSolid::side_of(const Box3& box) const {
-  const Interval f =
-      marrow::value(tracer_.tree(),
-                    Vec3<Interval>{{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}});
+  const Interval f = marrow::value(tracer_.tree(), places_in(box));
   if (f.hi < 1 - field_error()) return Side::Outside;
   return f.lo > 1 + field_error() ? Side::Inside : Side::Unknown;
 }

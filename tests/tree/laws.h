@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "field/math/box3.h"
+#include "field/number/places_in.h"
 #include "tests/field/random.h"
 #include "tests/number/precise.h"
 
@@ -34,9 +35,6 @@ Vec3<Jet<T, 3>> jet_variables(const Vec3<T>& p) {
   return {Jet<T, 3>::variable(p.x, 0), Jet<T, 3>::variable(p.y, 1), Jet<T, 3>::variable(p.z, 2)};
 }
 inline Vec3<Precise> precise(const Vec3d& p) { return {p.x, p.y, p.z}; }
-inline Vec3<Interval> spanned(const Box3& b) {
-  return {{b.lower.x, b.upper.x}, {b.lower.y, b.upper.y}, {b.lower.z, b.upper.z}};
-}
 inline bool contains(const Interval& bounds, Precise x) { return bounds.lo <= x.v && x.v <= bounds.hi; }
 
 inline Vec3d point_in(const Box3& box, Random& random) {
@@ -54,8 +52,8 @@ inline Box3 random_box(const Vec3d& corner, Random& random) {
 /// Enclosures over a box hold the values and slopes of points in it, and differences between them.
 template <class Field>
 void expect_enclosures(const Field& field, const Box3& box, int points, Random& random, Checks& checks) {
-  const Interval value = field.value(spanned(box));
-  const SlopeBounds bounds = field.value(jet_variables(spanned(box)));
+  const Interval value = field.value(places_in(box));
+  const SlopeBounds bounds = field.value(jet_variables(places_in(box)));
   Vec3d before{};
   Precise value_before;
   for (int k = 0; k < points; ++k) {
@@ -145,7 +143,7 @@ SlopeVerdict verdict_on_slope(const Field& field, const Vec3d& p, std::size_t ax
   Box3 around{p, p};
   around.lower[axis] -= step;
   around.upper[axis] += step;
-  const Interval range = field.value(jet_variables(spanned(around))).slope[axis];
+  const Interval range = field.value(jet_variables(places_in(around))).slope[axis];
   const double scale = 1 + std::fabs(slope);
   SlopeVerdict v;
   v.difference = central_difference([&](const Vec3d& q) { return field.value(precise(q)); }, p, axis, step);
@@ -251,7 +249,7 @@ std::optional<Vec3d> find_something(const Field& field, const Box3& box, int mos
   };
   std::priority_queue<Piece> pieces;
   const auto add = [&](const Box3& b) {
-    const double most = field.value(spanned(b)).hi;
+    const double most = field.value(places_in(b)).hi;
     if (most > 0) pieces.push({most, b});
   };
   add(box);

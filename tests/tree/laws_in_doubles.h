@@ -25,8 +25,8 @@ inline bool holds(const Interval& bounds, double x, double slack) {
 
 template <class Field>
 void expect_enclosures_in_doubles(const Field& field, const Box3& box, Random& random, Checks& checks) {
-  const Interval value = field.value(spanned(box));
-  const SlopeBounds bounds = field.value(jet_variables(spanned(box)));
+  const Interval value = field.value(places_in(box));
+  const SlopeBounds bounds = field.value(jet_variables(places_in(box)));
   ASSERT_LE(value.lo, value.hi);
   for (int k = 0; k < 6; ++k) {
     const Vec3d p = k == 0 ? box.lower : k == 1 ? box.upper : point_in(box, random);

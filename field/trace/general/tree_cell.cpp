@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "field/number/places_in.h"
 #include "field/trace/cells/divider.h"
 
 namespace marrow {
@@ -17,14 +18,10 @@ constexpr double worth_a_copy = 0.7;
 // Neighbours overlap by more than what the errors of their fields move a root; their trees hold a little farther.
 constexpr double overlap = 1e-6, validity = 4e-6;
 
-Vec3<Interval> span_of(const Box3& box) {
-  return {{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
-}
-
 Vec3<Jet<Interval, 3>> with_slopes(const Box3& box) {
   using X = Jet<Interval, 3>;
-  return {X::variable({box.lower.x, box.upper.x}, 0), X::variable({box.lower.y, box.upper.y}, 1),
-          X::variable({box.lower.z, box.upper.z}, 2)};
+  const Vec3<Interval> p = places_in(box);
+  return {X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)};
 }
 
 bool excludes_zero(const Interval& x) { return x.lo > 0 || x.hi < 0; }
@@ -83,7 +80,7 @@ std::unique_ptr<const TreeCell> TreeCell::make_octant(std::size_t i) const {
   const Box3 around = cell->box().padded(cell->half_ * validity);
   if (lent_ != nullptr && lent_->decides_around(around)) return {};
   // As the larger cube sums it: enough to drop most of what can be dropped, before anything is made for it.
-  if (!value(*tree_, span_of(around)).contains(1)) return {};
+  if (!value(*tree_, places_in(around)).contains(1)) return {};
   FieldTree own = localized(*tree_, around);
   const auto f = value(own, with_slopes(around));
   if (!f.value.contains(1)) return {};

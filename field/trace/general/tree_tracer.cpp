@@ -8,6 +8,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "field/number/places_in.h"
 #include "field/trace/general/crossing.h"
 #include "field/trace/general/tree_fields.h"
 
@@ -30,10 +31,6 @@ Vec3<Interval> stretch_of(const Ray& ray, const Interval& t) {
   return {Interval(o.x) + t * Interval(d.x), Interval(o.y) + t * Interval(d.y), Interval(o.z) + t * Interval(d.z)};
 }
 
-Vec3<Interval> span_of(const Box3& box) {
-  return {{box.lower.x, box.upper.x}, {box.lower.y, box.upper.y}, {box.lower.z, box.upper.z}};
-}
-
 // The box without slabs at its sides that bounds prove to be outside.
 Box3 trimmed(const FieldTree& tree, const Member& member) {
   constexpr int halvings = 10;
@@ -45,7 +42,7 @@ Box3 trimmed(const FieldTree& tree, const Member& member) {
         const double cut = 0.5 * (outside + unknown);
         Box3 slab = box;
         (slab.*(side == &Box3::lower ? &Box3::upper : &Box3::lower))[i] = cut;
-        (value(tree, span_of(slab), member.record).hi < 1 ? outside : unknown) = cut;
+        (value(tree, places_in(slab), member.record).hi < 1 ? outside : unknown) = cut;
       }
       (box.*side)[i] = outside;
     }
@@ -181,7 +178,7 @@ std::optional<TreeHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, b
 
 // Whether no crossing in the box is on the surface.
 bool TreeTracer::is_inside_another(std::uint32_t member, const Box3& box) const {
-  return !members_.empty() && largest_of_others(member, span_of(box)).lo > 1 + members_are_off;
+  return !members_.empty() && largest_of_others(member, places_in(box)).lo > 1 + members_are_off;
 }
 
 // Whether another member is all around a crossing. For a ray from outside it is so only behind a crossing of that

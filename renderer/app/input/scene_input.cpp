@@ -12,12 +12,6 @@
 namespace marrow {
 namespace {
 
-Box3 placed(const Affine& world_from_local, const Box3& box) {
-  Box3 world;
-  for (const Vec3d& p : corners_of(box)) world.include(world_from_local.point(p));
-  return world;
-}
-
 Diagnostic no_such_field(const LoadedScene& scene, const std::string& name) {
   std::vector<std::string> fields;
   for (const auto& field : scene.fields) fields.push_back(scene.description.objects[field.object.index()].name);
@@ -71,7 +65,7 @@ Box3 extent(const FieldProgram& program) {
   Box3 box;
   for (const auto& part : program.parts()) {
     const Box3 skeletons = skeleton_bounds(part.blend);
-    if (!skeletons.empty()) box.include(placed(part.world_from_local, skeletons.padded(largest_radius(part.blend))));
+    if (!skeletons.empty()) box.include(part.world_from_local.box_around(skeletons.padded(largest_radius(part.blend))));
   }
   for (const auto& tree : program.trees()) {
     const Box3 surface = surface_bounds(tree);
