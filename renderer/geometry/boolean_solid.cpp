@@ -27,13 +27,15 @@ double rounding_at(const Ray& ray, double t) { return 0x1p-50 * (max_component(a
 }  // namespace
 
 Result<std::unique_ptr<BooleanSolid>> BooleanSolid::make(FieldTree whole, const Box3& bounds, SetExpression expression,
-                                                         MaterialId of_object, const BlendSolid& blend_solid) {
+                                                         MaterialId of_object, const BlendSolid& blend_solid,
+                                                         std::shared_ptr<const RaySpacing> spacing) {
   std::vector<std::unique_ptr<OperandSolid>> operands;
   for (std::size_t i = 0; i < expression.operands().size(); ++i) {
     const SetExpression::Operand& operand = expression.operands()[i];
     Result<std::unique_ptr<OperandSolid>> solid =
-        operand.blend != nullptr ? blend_solid(i)
-                                 : as_operand(TreeSolid::make(operand.tree, of_object, bounds, operand.lent));
+        operand.blend != nullptr
+            ? blend_solid(i)
+            : as_operand(TreeSolid::make(operand.tree, of_object, bounds, {operand.lent, spacing}));
     if (!solid) return solid.why();
     operands.push_back(std::move(*solid));
   }

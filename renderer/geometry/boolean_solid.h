@@ -24,9 +24,11 @@ class BooleanSolid final : public Solid {
  public:
   /// What is made of the blend that is an operand, by its index.
   using BlendSolid = std::function<Result<std::unique_ptr<OperandSolid>>(std::size_t operand)>;
-  /// `whole`: the same field as that of the expression; `bounds` hold all that is inside. Errors: those of operands.
+  /// `whole`: the same field as that of the expression; `bounds` hold all that is inside; `spacing` as in TreeDivision.
+  /// Errors: those of operands.
   static Result<std::unique_ptr<BooleanSolid>> make(FieldTree whole, const Box3& bounds, SetExpression,
-                                                    MaterialId of_object, const BlendSolid&);
+                                                    MaterialId of_object, const BlendSolid&,
+                                                    std::shared_ptr<const RaySpacing> spacing = nullptr);
 
   std::size_t element_count() const override { return elements_.size(); }
   Box3 element_box(std::size_t element) const override;

@@ -61,7 +61,10 @@ struct Compiled {
 // Objects one by one into solids and planes; errors of all of them are gathered.
 class Builder {
  public:
-  Builder(const SceneDescription& scene, const SurfaceOptions& options) : scene_(scene), options_(options) {}
+  Builder(const SceneDescription& scene, const SurfaceOptions& options) : scene_(scene), options_(options) {
+    in_world_->views.push_back(ray_spacing(scene, Affine{}));
+    in_world_->samples = options.samples;
+  }
 
   std::vector<PlacedSolid> solids;
   std::vector<PlacedPlane> planes;
@@ -136,11 +139,11 @@ class Builder {
     for (std::size_t i = 0; i < field.tracers.size(); ++i) {
       const PlacedBlend& part = field.program.parts()[i];
       Traced* const same = field.tracers[i].get();
-      if (same == nullptr) add(TreeSolid::make(tree_of(part), object.material), object, id);
+      if (same == nullptr) add(tree_solid(tree_of(part), object), object, id);
       else add(field_solid(*same, part, object), object, id);
     }
     for (const Combined& combined : field.combined) add(boolean_solid(combined, object), object, id);
-    for (FieldTree& tree : field.trees) add(TreeSolid::make(std::move(tree), object.material), object, id);
+    for (FieldTree& tree : field.trees) add(tree_solid(std::move(tree), object), object, id);
   }
 
   Result<std::unique_ptr<FieldSolid>> field_solid(Traced& same, const PlacedBlend& part,
@@ -151,6 +154,10 @@ class Builder {
     return made;
   }
 
+  Result<std::unique_ptr<TreeSolid>> tree_solid(FieldTree tree, const ObjectDescription& object) {
+    return TreeSolid::make(std::move(tree), object.material, TreeTracer::everywhere, {nullptr, in_world_});
+  }
+
   Result<std::unique_ptr<BooleanSolid>> boolean_solid(const Combined& combined, const ObjectDescription& object) {
     const auto& [whole, bounds, expression] = combined.blends;
     const auto blend_solid = [&](std::size_t i) {
@@ -158,7 +165,7 @@ class Builder {
       const Affine& placed = operand.world_from_blend;
       return as_operand(field_solid(*combined.tracers[i], {*operand.blend, placed, placed.inverse()}, object));
     };
-    return BooleanSolid::make(whole, bounds, expression, object.material, blend_solid);
+    return BooleanSolid::make(whole, bounds, expression, object.material, blend_solid, in_world_);
   }
 
   template <class SolidType>
@@ -173,6 +180,7 @@ class Builder {
  private:
   const SceneDescription& scene_;
   const SurfaceOptions& options_;
+  std::shared_ptr<RaySpacing> in_world_ = std::make_shared<RaySpacing>();
   std::map<std::size_t, std::shared_ptr<Traced>> shared_;  // by PlacedBlend::shared
 };
 

@@ -18,8 +18,8 @@ bool holds_blends(const FieldTree& tree) {
 }  // namespace
 
 Result<std::unique_ptr<TreeSolid>> TreeSolid::make(FieldTree tree, MaterialId of_object, const Box3& within,
-                                                   std::shared_ptr<const BlendInTree> lent) {
-  auto tracer = TreeTracer::make(std::move(tree), within, std::move(lent));
+                                                   TreeDivision division) {
+  auto tracer = TreeTracer::make(std::move(tree), within, std::move(division));
   if (!tracer) return tracer.why();
   return std::unique_ptr<TreeSolid>(new TreeSolid(std::move(*tracer), of_object));
 }

@@ -13,8 +13,7 @@ class TreeSolid final : public OperandSolid {
  public:
   /// As TreeTracer::make().
   static Result<std::unique_ptr<TreeSolid>> make(FieldTree, MaterialId of_object,
-                                                 const Box3& within = TreeTracer::everywhere,
-                                                 std::shared_ptr<const BlendInTree> lent = nullptr);
+                                                 const Box3& within = TreeTracer::everywhere, TreeDivision = {});
 
   std::size_t element_count() const override { return tracer_.cell_count(); }
   Box3 element_box(std::size_t element) const override { return tracer_.cell_box(element); }

@@ -13,7 +13,8 @@ namespace marrow::test {
 
 /// None where it is no expression of blends of more than `few` skeletons.
 inline std::unique_ptr<BooleanSolid> boolean_solid_of(const FieldTree& tree, std::size_t few, MaterialId material,
-                                                      const TraceOptions& options = {}) {
+                                                      const TraceOptions& options = {},
+                                                      std::shared_ptr<const RaySpacing> spacing = nullptr) {
   const auto stands_alone = [&](const BlendField& blend) { return blend.size() > few; };
   auto expression = SetExpression::of(tree, tree.root(), stands_alone);
   if (!expression) return nullptr;
@@ -22,7 +23,8 @@ inline std::unique_ptr<BooleanSolid> boolean_solid_of(const FieldTree& tree, std
     const Affine& placed = operands[i].world_from_blend;
     return as_operand(FieldSolid::make({*operands[i].blend, placed, placed.inverse()}, material, options));
   };
-  auto solid = BooleanSolid::make(tree, surface_bounds(tree), std::move(*expression), material, blend_solid);
+  auto solid =
+      BooleanSolid::make(tree, surface_bounds(tree), std::move(*expression), material, blend_solid, std::move(spacing));
   if (!solid) throw std::runtime_error("an operand cannot be traced");
   return std::move(*solid);
 }

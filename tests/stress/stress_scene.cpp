@@ -2,7 +2,6 @@
 #include "tests/stress/stress_scene.h"
 
 #include <array>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <stdexcept>
@@ -11,6 +10,7 @@
 #include "field/math/elementary.h"
 #include "renderer/geometry/field_solid.h"
 #include "tests/stress/odd_drafts.h"
+#include "tests/trace/large_cells.h"
 
 namespace marrow::test {
 namespace {
@@ -193,11 +193,7 @@ StressScene::StressScene(std::uint64_t number) {
 TraceOptions options_of(std::uint64_t number) {
   TraceOptions options;
   const std::uint64_t way = number / single_angle_kinds % 4;
-  if (way >= 2) {
-    RaySpacing few;
-    few.views.push_back({.eye = {}, .constant = std::numeric_limits<double>::infinity()});
-    options.spacing = std::make_shared<const RaySpacing>(few);
-  }
+  if (way >= 2) options.spacing = hardly_a_ray();
   options.eighths = way % 2 == 1;
   if (way == 3) options.cells = {.cell_size = 1.6, .tile_levels = 2};
   return options;

@@ -6,6 +6,7 @@
 
 #include "renderer/geometry/tree_solid.h"
 #include "tests/geometry/boolean_scene.h"
+#include "tests/trace/large_cells.h"
 #include "tests/trace/random_scene.h"
 
 namespace marrow::test {
@@ -28,11 +29,11 @@ Placement random_placement_of_scene(Random& random) {
 }
 
 // Blends under set operations as a scene has them, all else by the general tracer.
-std::unique_ptr<Solid> solid_of(const FieldTree& tree, std::size_t kind) {
+std::unique_ptr<Solid> solid_of(const FieldTree& tree, std::size_t kind, std::shared_ptr<const RaySpacing> spacing) {
   constexpr std::size_t few = 50;
   if (has_traced_blends(kind))
-    if (auto solid = boolean_solid_of(tree, few, MaterialId{})) return solid;
-  auto solid = TreeSolid::make(tree, MaterialId{});
+    if (auto solid = boolean_solid_of(tree, few, MaterialId{}, {}, spacing)) return solid;
+  auto solid = TreeSolid::make(tree, MaterialId{}, TreeTracer::everywhere, {.lent = nullptr, .spacing = spacing});
   if (!solid) return nullptr;
   return std::move(*solid);
 }
@@ -48,7 +49,7 @@ TreeScene::TreeScene(std::uint64_t number) : kind_(tree_kind_of(number)) {
   tree_ = std::move(draft.tree);
   places_ = std::move(draft.places);
   focus_size_ = draft.focus_size * placement.scale;
-  std::unique_ptr<Solid> solid = solid_of(tree_, kind_);
+  std::unique_ptr<Solid> solid = solid_of(tree_, kind_, random.between(0, 1) < 0.5 ? nullptr : hardly_a_ray());
   if (solid == nullptr) throw std::runtime_error(name_ + " cannot be traced");
   for (std::size_t i = 0; i < solid->element_count(); ++i) cells_.include(solid->element_box(i));
   // A tree without surface: rays go where it might be.

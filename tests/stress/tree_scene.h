@@ -13,7 +13,8 @@
 namespace marrow::test {
 
 /// One tree and the surfaces that are tested. Half of the scenes are some units large and stand at the origin; the
-/// others are scaled by 1e-4 to 1e4, and some stand up to 1e5 of their sizes away.
+/// others are scaled by 1e-4 to 1e4, and some stand up to 1e5 of their sizes away. Half have cells as where hardly a
+/// ray comes.
 class TreeScene {
  public:
   /// The kind is `number` modulo the number of kinds; everything else is drawn from a generator with this seed.

@@ -9,11 +9,14 @@
 
 namespace marrow::test {
 
+inline std::shared_ptr<const RaySpacing> hardly_a_ray() {
+  return std::make_shared<const RaySpacing>(
+      RaySpacing{.views = {{.eye = {}, .constant = std::numeric_limits<double>::infinity()}}});
+}
+
 inline TraceOptions large_cells() {
-  RaySpacing few;
-  few.views.push_back({.eye = {}, .constant = std::numeric_limits<double>::infinity()});
   TraceOptions options;
-  options.spacing = std::make_shared<const RaySpacing>(few);
+  options.spacing = hardly_a_ray();
   options.eighths = true;
   return options;
 }

@@ -1,6 +1,7 @@
 #include "field/trace/general/tree_cell.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "field/number/places_in.h"
@@ -13,6 +14,10 @@ namespace {
 // nodes goes on getting smaller, or a blend still has skeletons that are too near for sums over nodes.
 constexpr int max_level = 6, max_level_of_leaf = 5, max_level_near = 11, max_level_of_many = 24;
 constexpr std::size_t many_records = 64;
+// Cells of that level and deeper need more rays than so many of a camera in the half side (README). Where samples are
+// not known they are taken to be as many as a picture mostly has.
+constexpr int min_level_of_few_rays = 4;
+constexpr double few_rays = 1.5, likely_samples = 16;
 // A part of space whose tree has more than this share of the nodes of the one around it shares that.
 constexpr double worth_a_copy = 0.7;
 // Neighbours overlap by more than what the errors of their fields move a root; their trees hold a little farther.
@@ -36,6 +41,14 @@ bool is_fine_enough(const FieldTree& tree, bool shrinks, bool one_sheet, int lev
   return level >= (records <= 1 ? max_level_of_leaf : max_level) || (one_sheet && level >= 2);
 }
 
+// Whether so few rays of a camera come that dividing a cell would cost more than it saves them. Later samples come
+// between those of the first one.
+bool is_hardly_met(const RaySpacing* spacing, const Box3& cell, int level) {
+  if (spacing == nullptr || level < min_level_of_few_rays) return false;
+  const double half = 0.5 * cell.size().x, samples = spacing->samples > 0 ? spacing->samples : likely_samples;
+  return half < few_rays * spacing->in_cube(cell.center(), half) / std::sqrt(samples);
+}
+
 }  // namespace
 
 Interval clip(const Box3& cell, const Ray& ray) {
@@ -56,8 +69,8 @@ Interval clip(const Box3& cell, const Ray& ray) {
 
 // The cube of the box, with a little room.
 std::unique_ptr<const TreeCell> TreeCell::root(const FieldTree& tree, const Box3& box, std::uint32_t record,
-                                               const BlendInTree* lent) {
-  std::unique_ptr<TreeCell> cell(new TreeCell(box.center(), 0.5 * max_component(box.size()) * (1 + 1e-6), 0, lent));
+                                               const TreeDivision& division) {
+  std::unique_ptr<TreeCell> cell(new TreeCell(box.center(), 0.5 * max_component(box.size()) * (1 + 1e-6), 0, division));
   cell->tree_ = std::make_shared<const FieldTree>(localized(tree, cell->box().padded(cell->half_ * validity), record));
   return cell;
 }
@@ -76,9 +89,9 @@ const TreeCell* TreeCell::octant(std::size_t i) const {
 // The octant, unless bounds prove all of it outside or inside, or it is traced otherwise.
 std::unique_ptr<const TreeCell> TreeCell::make_octant(std::size_t i) const {
   std::unique_ptr<TreeCell> cell(
-      new TreeCell(octant_center(center_, half_, static_cast<int>(i)), half_ / 2, level_ + 1, lent_));
+      new TreeCell(octant_center(center_, half_, static_cast<int>(i)), half_ / 2, level_ + 1, division_));
   const Box3 around = cell->box().padded(cell->half_ * validity);
-  if (lent_ != nullptr && lent_->decides_around(around)) return {};
+  if (division_.lent != nullptr && division_.lent->decides_around(around)) return {};
   // As the larger cube sums it: enough to drop most of what can be dropped, before anything is made for it.
   if (!value(*tree_, places_in(around)).contains(1)) return {};
   FieldTree own = localized(*tree_, around);
@@ -87,7 +100,8 @@ std::unique_ptr<const TreeCell> TreeCell::make_octant(std::size_t i) const {
   const bool one_sheet = excludes_zero(f.slope[0]) || excludes_zero(f.slope[1]) || excludes_zero(f.slope[2]);
   const std::size_t records = own.records().size();
   const bool shrinks = static_cast<double>(records) < worth_a_copy * static_cast<double>(tree_->records().size());
-  cell->is_leaf_ = is_fine_enough(own, shrinks, one_sheet, cell->level_);
+  cell->is_leaf_ = is_fine_enough(own, shrinks, one_sheet, cell->level_) ||
+                   is_hardly_met(division_.spacing.get(), cell->box(), cell->level_);
   cell->tree_ = shrinks || records <= many_records ? std::make_shared<const FieldTree>(std::move(own)) : tree_;
   return cell;
 }

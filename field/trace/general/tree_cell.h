@@ -9,6 +9,7 @@
 #include "field/base/lazy.h"
 #include "field/math/ray.h"
 #include "field/number/interval.h"
+#include "field/trace/cells/ray_spacing.h"
 #include "field/tree/blend_in_tree.h"
 #include "field/tree/field_tree.h"
 
@@ -18,13 +19,19 @@ namespace marrow {
 /// between them by rounding. Empty: lo > hi.
 Interval clip(const Box3&, const Ray&);
 
+/// What tells, beside the tree, how far space is divided. It must outlive the cells.
+struct TreeDivision {
+  /// A blend of the tree that is traced by itself, so that no part is made where it decides; null: none.
+  std::shared_ptr<const BlendInTree> lent;
+  /// Of the rays of a camera, in the tree's coordinates; null: not known.
+  std::shared_ptr<const RaySpacing> spacing;
+};
+
 /// A cube that may hold surface. What it holds is a function of its place alone. Safe to use from many threads.
 class TreeCell {
  public:
-  /// All of a box with the field of a tree, or of what stands below a record of it. `lent`, which must outlive it, or
-  /// null: a blend of the tree that is traced by itself, so that no part is made where it decides.
-  static std::unique_ptr<const TreeCell> root(const FieldTree&, const Box3&, std::uint32_t record,
-                                              const BlendInTree* lent);
+  /// All of a box with the field of a tree, or of what stands below a record of it.
+  static std::unique_ptr<const TreeCell> root(const FieldTree&, const Box3&, std::uint32_t record, const TreeDivision&);
 
   Box3 box() const { return Box3{center_, center_}.padded(half_); }
   /// Equal to the whole in the box and a little beyond.
@@ -48,15 +55,15 @@ class TreeCell {
   std::size_t bytes() const;
 
  private:
-  TreeCell(const Vec3d& center, double half, int level, const BlendInTree* lent)
-      : center_(center), half_(half), level_(level), lent_(lent) {}
+  TreeCell(const Vec3d& center, double half, int level, const TreeDivision& division)
+      : center_(center), half_(half), level_(level), division_(division) {}
   std::unique_ptr<const TreeCell> make_octant(std::size_t i) const;
 
   Vec3d center_;
   double half_;
   int level_;
   bool is_leaf_ = false;
-  const BlendInTree* lent_;
+  const TreeDivision& division_;
   std::shared_ptr<const FieldTree> tree_;  ///< may serve several cells
   using Octant = std::unique_ptr<const TreeCell>;
   std::array<Lazy<Octant>, octant_count> octants_;

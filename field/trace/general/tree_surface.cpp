@@ -39,7 +39,7 @@ std::optional<Vec3d> TreeTracer::outside_along(const Cell& c, const Vec3d& posit
 }
 
 double TreeTracer::error_at(const Cell& c) const {
-  if (lent_ != nullptr) return error_beside_lent;
+  if (lent() != nullptr) return error_beside_lent;
   return c.part != nullptr ? error_of_local_sums : rounding_of_sums;
 }
 

@@ -51,8 +51,8 @@ Box3 trimmed(const FieldTree& tree, const Member& member) {
 
 }  // namespace
 
-Result<TreeTracer> TreeTracer::make(FieldTree tree, const Box3& within, std::shared_ptr<const BlendInTree> lent) {
-  TreeTracer made(std::move(tree), std::move(lent));
+Result<TreeTracer> TreeTracer::make(FieldTree tree, const Box3& within, TreeDivision division) {
+  TreeTracer made(std::move(tree), std::move(division));
   std::vector<Member> all = members(made.tree_);
   for (Member& member : all) member.bounds = common(member.bounds, within);
   if (all.size() > 1 && all.size() <= most_asked) made.members_ = all;
@@ -73,7 +73,7 @@ Result<TreeTracer> TreeTracer::make(FieldTree tree, const Box3& within, std::sha
 
 // In the order of space.
 void TreeTracer::divide(const Member& member) {
-  roots_.push_back(TreeCell::root(tree_, member.bounds, member.record, lent_.get()));
+  roots_.push_back(TreeCell::root(tree_, member.bounds, member.record, *division_));
   std::vector<const TreeCell*> level{roots_.back().get()};
   for (int depth = 1; !level.empty(); ++depth) {
     tbb::parallel_for(std::size_t{0}, level.size() * TreeCell::octant_count,

@@ -32,10 +32,9 @@ struct TreeHit {
 /// Safe to use from many threads.
 class TreeTracer {
  public:
-  /// Of the surface `within` a box, but where it is that of a blend which is `lent`. Errors: a field whose surface is
+  /// Of the surface `within` a box, but where it is that of a blend which is lent. Errors: a field whose surface is
   /// not bounded there, or may be anywhere.
-  static Result<TreeTracer> make(FieldTree, const Box3& within = everywhere,
-                                 std::shared_ptr<const BlendInTree> lent = nullptr);
+  static Result<TreeTracer> make(FieldTree, const Box3& within = everywhere, TreeDivision division = {});
   static constexpr Box3 everywhere{{-Box3::inf, -Box3::inf, -Box3::inf}, {Box3::inf, Box3::inf, Box3::inf}};
 
   std::size_t cell_count() const { return cells_.size(); }
@@ -51,7 +50,7 @@ class TreeTracer {
 
   const FieldTree& tree() const { return tree_; }
   /// Null: none.
-  const BlendInTree* lent() const { return lent_.get(); }
+  const BlendInTree* lent() const { return division_->lent.get(); }
   /// Of the leaf that counts most at a hit; invalid: the object's own.
   MaterialId material_at(std::size_t cell, const Vec3d& position) const;
   /// Bounds of the surface.
@@ -64,8 +63,10 @@ class TreeTracer {
     std::uint32_t member;  ///< record of the whole tree
     const TreeCell* part;  ///< equal to the member in the box and a little beyond; null: the member itself
   };
-  TreeTracer(FieldTree tree, std::shared_ptr<const BlendInTree> lent)
-      : tree_(std::move(tree)), lent_(std::move(lent)), only_material_(only_material(tree_)) {}
+  TreeTracer(FieldTree tree, TreeDivision division)
+      : tree_(std::move(tree)),
+        division_(std::make_unique<const TreeDivision>(std::move(division))),
+        only_material_(only_material(tree_)) {}
   void divide(const Member&);
   double error_at(const Cell&) const;
   UnitVec3 normal_at_joint(const Cell&, const Vec3d& position, const Vec3d& along, const UnitVec3& of_member) const;
@@ -85,8 +86,8 @@ class TreeTracer {
   auto with_field_near(const Cell&, const Vec3d& p, const Use&) const;
 
   FieldTree tree_;
-  std::shared_ptr<const BlendInTree> lent_;
-  std::optional<MaterialId> only_material_;  ///< of all leaves
+  std::unique_ptr<const TreeDivision> division_;  ///< where it stays for the cells
+  std::optional<MaterialId> only_material_;       ///< of all leaves
   Box3 bounds_;
   std::vector<Member> members_;  ///< of a union, where there are few enough to ask all of them at a crossing
   std::vector<std::unique_ptr<const TreeCell>> roots_;
