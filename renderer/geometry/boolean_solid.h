@@ -15,8 +15,7 @@
 #include <vector>
 
 #include "field/base/result.h"
-#include "field/tree/set_expression.h"
-#include "renderer/geometry/operand_solid.h"
+#include "renderer/geometry/boolean_sides.h"
 
 namespace marrow {
 
@@ -32,11 +31,11 @@ class BooleanSolid final : public Solid {
 
   std::size_t element_count() const override { return elements_.size(); }
   Box3 element_box(std::size_t element) const override;
-  Box3 extent() const override { return bounds_; }
-  Box3 reach() const override { return bounds_; }
-  FieldSample sample(const Vec3d&) const override;
-  double value(const Vec3d&) const override;
-  Side clear_side(const Vec3d&) const override;
+  Box3 extent() const override { return sides_.bounds(); }
+  Box3 reach() const override { return sides_.bounds(); }
+  FieldSample sample(const Vec3d& p) const override { return sides_.sample(p); }
+  double value(const Vec3d& p) const override { return sides_.value(p); }
+  Side clear_side(const Vec3d& p) const override { return sides_.clear_side(p); }
   bool is_left_by(const Ray&) const override;
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
   std::vector<SolidPart> parts() const override;
@@ -46,7 +45,7 @@ class BooleanSolid final : public Solid {
   void describe(std::span<const HitToDescribe>) const override;
   std::size_t primitive_count() const override;
   std::size_t bytes() const override;
-  const std::vector<std::unique_ptr<OperandSolid>>& operands() const { return operands_; }
+  const std::vector<std::unique_ptr<OperandSolid>>& operands() const { return sides_.operands(); }
 
  private:
   // An element of an operand, and whether all of its surface is known to be of the whole.
@@ -63,26 +62,16 @@ class BooleanSolid final : public Solid {
   BooleanSolid(FieldTree whole, const Box3& bounds, SetExpression, std::vector<std::unique_ptr<OperandSolid>>);
   void add_elements(std::size_t operand);
   OperandPart part_of_operand(const SolidPart&) const;
-  std::optional<bool> counts_in(std::size_t operand, const Box3&) const;
-  bool counts_at(std::size_t operand, const Ray&, double t) const;
-  bool is_entered_later(std::size_t operand, const Ray&, double t) const;
-  Side side_along(const Ray&, double t, double way) const;
-  Side side_of_operand(std::size_t operand, const Vec3d&, double rounding) const;
-  Side side_of_whole(const Vec3d&, double rounding) const;
-  Side side_if_outside(std::size_t operand, const Box3& where) const;
-  bool is_needed(std::size_t operand, const Vec3d& place) const;
   bool has_met_before(const OperandPart&, const Ray&) const;
   std::optional<double> hit(const OperandPart&, const Ray&, bool any, ElementLog&) const;
   std::optional<double> crossing(const OperandPart&, const Ray&, ElementLog&) const;
   void complete(std::size_t operand, const HitToDescribe&, const Element&) const;
   void free_start(const Ray&, SurfaceHit&) const;
 
-  FieldTree whole_;
-  Box3 bounds_;
-  SetExpression expression_;
-  std::vector<std::unique_ptr<OperandSolid>> operands_;
-  std::vector<bool> needed_;  // of operands: what is outside it is outside the whole, everywhere
-  std::size_t largest_ = 0;   // operand: what rays know of their beginnings from part to part is of this one
+  const SetExpression& expression() const { return sides_.expression(); }
+
+  BooleanSides sides_;
+  std::size_t largest_ = 0;  // operand: what rays know of their beginnings from part to part is of this one
   std::vector<Element> elements_;
   std::vector<std::vector<std::uint32_t>> element_of_;  // of an operand's elements; none: nothing of it counts
 };
