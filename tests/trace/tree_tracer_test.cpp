@@ -293,6 +293,35 @@ TEST(TreeTracer, StartsBesideAPlaneThatTheRayRunsIn) {
   EXPECT_GT(hits, 20);
 }
 
+// Down the face of one box to the edge of another that goes on in its plane: outside is behind the ray and aside,
+// nowhere else, and by rounding either box may be met.
+TEST(TreeTracer, StartsInACornerToWhichTheRayRunsInAFace) {
+  Random random(49);
+  int hits = 0;
+  for (int i = 0; i < 200; ++i) {
+    FieldDescription field;
+    const FieldNodeId wide = add(field, Box{.center = {}, .size = {2, 1, 1.2}, .potential = {}});
+    const FieldNodeId beside = add(field, Box{.center = {1.5, 0.25, 0}, .size = {1, 1, 1.2}, .potential = {}});
+    const FieldNodeId both = field.add({.what = Union{{wide, beside}}, .where = {}});
+    const double scale = random.between(0.03, 3);
+    const Affine map = Affine::scale({scale, scale, scale});
+    const FieldTree tree = tree_above(field, field.add({.what = Transform{map, both}, .where = {}}));
+    const auto tracer = TreeTracer::make(tree);
+    ASSERT_TRUE(tracer) << tracer.why()[0].message;
+    const Ray ray{.origin = {scale, random.between(1, 7) * scale, 0}, .direction = UnitVec3::unchecked({0, -1, 0})};
+    for (std::size_t cell = 0; cell < tracer->cell_count(); ++cell) {
+      CellLog log;
+      const auto hit = tracer->first_hit(cell, ray, false, log);
+      if (!hit) continue;
+      ++hits;
+      const SurfacePoint at = tracer->surface_at(cell, ray.at(hit->t), ray.direction);
+      EXPECT_LT(value(tree, at.outside), 1) << "scale " << scale << " at " << ray.at(hit->t).y / scale;
+      EXPECT_GE(dot(at.normal, at.outside - ray.at(hit->t)), 0);
+    }
+  }
+  EXPECT_GT(hits, 20);
+}
+
 TEST(TreeTracer, SpawnedPointsLieOutside) {
   Random random(43);
   int hits = 0;

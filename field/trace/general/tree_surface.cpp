@@ -90,12 +90,17 @@ SurfacePoint TreeTracer::surface_at(std::size_t cell, const Vec3d& position, con
     for (const Vec3d& way : ways)
       if (const auto outside = outside_along(c, position, way, likely))
         return {.normal = normal, .outside = *outside, .around = {}};
-  // At an edge of a face in whose plane the ray runs, all these ways may lie in it: aslant to all sides.
+  // At an edge of a face in whose plane the ray runs, all these ways may lie in it: aslant to all sides. Where the
+  // field is level in that face, the normal by slopes is that of either side.
   const Frame frame = Frame::around(normal);
-  for (const double x : {-1, 0, 1})
-    for (const double y : {-1, 0, 1})
-      if (const auto outside = outside_along(c, position, frame.to_world({x, y, 1}), 1e-13))
-        return {.normal = normal, .outside = *outside, .around = {}};
+  for (const double z : {1, 0, -1})
+    for (const double x : {-1, 0, 1})
+      for (const double y : {-1, 0, 1}) {
+        if (x == 0 && y == 0 && z == 0) continue;
+        const Vec3d way = frame.to_world({x, y, z});
+        if (const auto outside = outside_along(c, position, way, 1e-13))
+          return {.normal = z < 0 ? normalize(way) : normal, .outside = *outside, .around = {}};
+      }
   return {.normal = normal, .outside = position, .around = {}};
 }
 
