@@ -7,8 +7,8 @@
 
 namespace marrow {
 
-/// Of one blend, from everywhere it is placed, in its own coordinates. A hint: cells are larger where rays are few, and
-/// nothing else depends on it.
+/// Of one blend, from everywhere it is placed, in its own coordinates, or of a general tree. A hint: cells are larger
+/// where rays are few, and nothing else depends on it.
 struct RaySpacing {
   /// Neighbouring rays are `constant + per_distance |p - eye|` apart at p.
   struct View {
