@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "field/number/places_in.h"
+#include "field/number/variables_at.h"
 #include "field/program/field_program.h"
 #include "field/tree/blend_values.h"
 #include "field/tree/tree_node.h"
@@ -43,9 +44,8 @@ FieldSample sample_of(const PlacedBlend& part, const Vec3d& p) {
 }
 
 FieldSample sample_of(const FieldTree& tree, const Vec3d& p) {
-  using X = Jet<double, 3>;
-  const X v = value(tree, Vec3<X>{X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)});
-  return {.value = v.value, .gradient = {v.slope[0], v.slope[1], v.slope[2]}, .material = strongest_material(tree, p)};
+  const auto v = value(tree, variables_at<Jet<double, 3>>(p));
+  return {.value = v.value, .gradient = gradient_of(v), .material = strongest_material(tree, p)};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "field/blend/angle/alpha_sample.h"
 #include "field/number/places_in.h"
+#include "field/number/variables_at.h"
 #include "field/program/field_program.h"
 #include "field/skeleton/second_order.h"
 
@@ -28,7 +29,7 @@ class RampedField : public AlphaSource {
   }
 
   HessianJet second_order_at(const Vec3d& p) const override {
-    const HessianJet v = second_order_value(program_, variables_at(p));
+    const HessianJet v = second_order_value(program_, variables_at<HessianJet>(p));
     const double share = (v.value - ramp_.from[0]) / (ramp_.from[1] - ramp_.from[0]);
     if (!(share > 0 && share < 1)) return ramp_(v.value);
     return ramp_.to[0] + (v - ramp_.from[0]) * ((ramp_.to[1] - ramp_.to[0]) / (ramp_.from[1] - ramp_.from[0]));
@@ -43,8 +44,7 @@ class RampedField : public AlphaSource {
 
   Vec3<Interval> slopes(const Box3& box) const override {
     using X = Jet<Interval, 3>;
-    const Vec3<Interval> p = places_in(box);
-    const X v = enclosed<X>({X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)});
+    const X v = enclosed<X>(variables_at<X>(places_in(box)));
     const double least = std::min(ramp_.from[0], ramp_.from[1]), most = std::max(ramp_.from[0], ramp_.from[1]);
     if (v.value.hi < least || v.value.lo > most) return {Interval(0), Interval(0), Interval(0)};
     const bool level_too = v.value.lo <= least || v.value.hi >= most;

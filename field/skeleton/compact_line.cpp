@@ -111,7 +111,7 @@ X half_power(const X& x, int m) {
 SecondOrderSample compact_line(const SegmentSkeleton& s, const Vec3d& p, const Kernel& kernel, bool share) {
   SecondOrderSample sum;
   const double length = marrow::length(s.to - s.from), R = kernel.shape;
-  const MovingLine line = seen_by(s, variables_at(p), length);
+  const MovingLine line = seen_by(s, variables_at<HessianJet>(p), length);
   const Profile profile(kernel, 1);
   const int m = profile.degree();
   integrate(line, R, [&](const X& t, const X& weight) {

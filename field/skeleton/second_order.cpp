@@ -91,7 +91,7 @@ SecondOrderSample second_order_of_cani_hornus(const SegmentSkeleton& s, const Ve
   if (!(length > 0)) return {};
   SecondOrderSample sample = second_order(SegmentSkeleton{s.from, s.to, 1, 1}, p, Kernel{KernelFamily::Inverse, 3, 1});
   if (!(sample.field.value <= field_ceiling)) return SecondOrderSample::on_skeleton();
-  const HessianJet share = clamp(dot(variables_at(p) - s.from, (s.to - s.from) / (length * length)), 0, 1);
+  const HessianJet share = clamp(dot(variables_at<HessianJet>(p) - s.from, (s.to - s.from) / (length * length)), 0, 1);
   const HessianJet radius = s.radius_from + (s.radius_to - s.radius_from) * share, squared = square(radius);
   sample.field = sample.field * squared;
   for (std::size_t c = 0; c < 3; ++c) sample.si[c] = sample.si[c] * (squared * radius);

@@ -5,6 +5,7 @@
 
 #include "field/description/field_node.h"
 #include "field/number/functions.h"
+#include "field/number/variables_at.h"
 #include "field/skeleton/skeleton_sample.h"
 
 namespace marrow {
@@ -22,11 +23,6 @@ struct SecondOrderSample {
     return *this;
   }
 };
-
-/// A position whose coordinates are the variables.
-inline Vec3<HessianJet> variables_at(const Vec3d& p) {
-  return {HessianJet::variable(p.x, 0), HessianJet::variable(p.y, 1), HessianJet::variable(p.z, 2)};
-}
 
 /// Integrals: the same quadratures as for the fields themselves, with the second derivatives of the kernel under the
 /// integral; relative error below 1e-12. Under the compact kernel, whose edge moves with p, the nodes of a segment move

@@ -43,7 +43,7 @@ SecondOrderSample sample_at(const Place& q, const Kernel& kernel) {
 }
 
 Place fixed(const NearestPlace& q) {
-  return {variables_at(q.to_point), X(q.radius), {X(q.shares[0].value), X(q.shares[1].value)}};
+  return {variables_at<HessianJet>(q.to_point), X(q.radius), {X(q.shares[0].value), X(q.shares[1].value)}};
 }
 
 // Where foot + slope height^2 / (radius at the foot) lies.   [field-maths 3.2]
@@ -59,7 +59,7 @@ Place moving_on(const SegmentSkeleton& s, const Vec3<X>& p) {
 
 Place place_on(const SegmentSkeleton& s, const Vec3d& p) {
   const NearestPlace q = nearest_place(s, p);
-  return q.is_fixed() ? fixed(q) : moving_on(s, variables_at(p));
+  return q.is_fixed() ? fixed(q) : moving_on(s, variables_at<HessianJet>(p));
 }
 
 // The same in the plane of a triangle; nothing when it is not inside.
@@ -79,7 +79,7 @@ std::optional<Place> place_in_plane(const TriangleSkeleton& s, const Vec3<X>& p)
 }
 
 Place place_on(const TriangleSkeleton& s, const Vec3d& p) {
-  if (const auto inside = place_in_plane(s, variables_at(p))) return *inside;
+  if (const auto inside = place_in_plane(s, variables_at<HessianJet>(p))) return *inside;
   std::optional<Place> best;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
@@ -94,7 +94,7 @@ Place place_on(const TriangleSkeleton& s, const Vec3d& p) {
 Place place_on(const ArcSkeleton& s, const Vec3d& p) {
   const NearestPlace nearest = nearest_place(s, p);
   if (nearest.is_fixed()) return fixed(nearest);
-  const Vec3<X> seen = variables_at(p - s.center);
+  const Vec3<X> seen = variables_at<HessianJet>(p - s.center);
   const Vec3d from_center = p - s.center - nearest.to_point;
   const double turn = 2 * std::numbers::pi, span = s.end - s.begin, slope = (s.radius_to - s.radius_from) / span;
   double root = atan2(dot(from_center, s.axis2), dot(from_center, s.axis1));
@@ -138,7 +138,7 @@ SecondOrderShares second_order_nearest_shares(const ArcSkeleton& s, const Vec3d&
 
 Vec3<X> second_order_nearest_direction(const ArcSkeleton& s, const Vec3d& p) {
   const Vec3d axis = cross(s.axis1, s.axis2) / s.major;
-  return cross(constant<X>(axis), variables_at(p - s.center) - place_on(s, p).v);
+  return cross(constant<X>(axis), variables_at<HessianJet>(p - s.center) - place_on(s, p).v);
 }
 
 }  // namespace marrow

@@ -116,7 +116,7 @@ SecondOrderShares second_order_shares(const TriangleSkeleton& triangle, const Ve
 
 SecondOrderShares second_order_foot_shares(const SegmentSkeleton& s, const Vec3d& p) {
   const Vec3d along = s.to - s.from;
-  return {clamp(dot(variables_at(p) - s.from, along / length_squared(along)), 0, 1), X()};
+  return {clamp(dot(variables_at<HessianJet>(p) - s.from, along / length_squared(along)), 0, 1), X()};
 }
 
 Vec3<X> second_order_direction(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "field/number/variables_at.h"
+
 namespace marrow {
 namespace {
 
@@ -23,9 +25,8 @@ BooleanSides::BooleanSides(FieldTree whole, const Box3& bounds, SetExpression ex
 }
 
 FieldSample BooleanSides::sample(const Vec3d& p) const {
-  using X = Jet<double, 3>;
-  const X f = marrow::value(whole_, Vec3<X>{X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)});
-  return {.value = f.value, .gradient = {f.slope[0], f.slope[1], f.slope[2]}};
+  const auto f = marrow::value(whole_, variables_at<Jet<double, 3>>(p));
+  return {.value = f.value, .gradient = gradient_of(f)};
 }
 
 double BooleanSides::value(const Vec3d& p) const { return marrow::value(whole_, p); }

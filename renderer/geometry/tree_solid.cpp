@@ -5,6 +5,7 @@
 
 #include "field/blend/blend_field.h"
 #include "field/number/places_in.h"
+#include "field/number/variables_at.h"
 #include "field/tree/tree_node.h"
 
 namespace marrow {
@@ -97,9 +98,8 @@ std::optional<Vec3d> TreeSolid::start_inside(const HitToDescribe& of) const {
 }
 
 FieldSample TreeSolid::sample(const Vec3d& p) const {
-  using X = Jet<double, 3>;
-  const X f = marrow::value(tracer_.tree(), Vec3<X>{X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)});
-  return {.value = f.value, .gradient = {f.slope[0], f.slope[1], f.slope[2]}};
+  const auto f = marrow::value(tracer_.tree(), variables_at<Jet<double, 3>>(p));
+  return {.value = f.value, .gradient = gradient_of(f)};
 }
 
 double TreeSolid::value(const Vec3d& p) const { return marrow::value(tracer_.tree(), p); }

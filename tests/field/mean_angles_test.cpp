@@ -11,6 +11,7 @@
 #include "field/blend/bounds/angle/field_weight.h"
 #include "field/blend/bounds/angle/mean_bounds.h"
 #include "field/number/functions.h"
+#include "field/number/variables_at.h"
 #include "tests/field/random.h"
 
 namespace marrow {
@@ -18,11 +19,7 @@ namespace {
 
 using test::Random;
 
-Vec3<HessianJet> place(const Vec3d& p) {
-  return {HessianJet::variable(p.x, 0), HessianJet::variable(p.y, 1), HessianJet::variable(p.z, 2)};
-}
-
-double slope_length(const HessianJet& x) { return length(Vec3d{x.slope[0], x.slope[1], x.slope[2]}); }
+double slope_length(const HessianJet& x) { return length(gradient_of(x)); }
 Vec3d bend_along(const HessianJet& x, const Vec3d& d) {
   Vec3d bend{};
   for (std::size_t k = 0; k < 6; ++k) {
@@ -39,7 +36,7 @@ struct Quadratic {
   Vec3d g, d;
   double k;
   HessianJet at(const Vec3d& p) const {
-    const auto x = place(p);
+    const auto x = variables_at<HessianJet>(p);
     const HessianJet along = x.x * d.x + x.y * d.y + x.z * d.z;
     return base + (x.x * g.x + x.y * g.y + x.z * g.z) + 0.5 * k * square(along);
   }

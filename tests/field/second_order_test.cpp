@@ -28,7 +28,6 @@ using test::varied_blend;
 
 constexpr auto second = Derivatives::Second;
 
-Vec3d slopes_of(const HessianJet& x) { return {x.slope[0], x.slope[1], x.slope[2]}; }
 Matrix3 curvatures_of(const HessianJet& x) {
   const auto& c = x.curvature;
   return {{Vec3d{c[0], c[5], c[4]}, Vec3d{c[5], c[1], c[3]}, Vec3d{c[4], c[3], c[2]}}};
@@ -122,11 +121,11 @@ TEST(SecondOrder, OfEverySkeletonAndKernel) {
       const SecondOrderSample jets = subject.jets(p);
       if (!(s.value > 1e-6) || s.value > 20) continue;
       EXPECT_LE(relative(s.value, jets.field.value), 1e-11);
-      EXPECT_LE(relative(s.gradient, slopes_of(jets.field)), 1e-10);
+      EXPECT_LE(relative(s.gradient, gradient_of(jets.field)), 1e-10);
       const double size = length(s.si_gradient), jacobian_size = magnitude(s.si_jacobian);
       for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_NEAR(s.si_gradient[c], jets.si[c].value, 1e-10 * size);
-        EXPECT_LE(length(s.si_jacobian.rows[c] - slopes_of(jets.si[c])), 1e-9 * jacobian_size);
+        EXPECT_LE(length(s.si_jacobian.rows[c] - gradient_of(jets.si[c])), 1e-9 * jacobian_size);
       }
       const auto agrees = [&](const Differences& d, const HessianJet& jet) {
         const Matrix3 exact = curvatures_of(jet);
@@ -162,7 +161,7 @@ TEST(SecondOrder, OfCorrectedFields) {
     const HessianJet jet = second_order_corrected(blend, p);
     EXPECT_LE(relative(s.corrected, jet.value), 1e-11);
     const double size = length(s.corrected_gradient);
-    EXPECT_LE(length(s.corrected_gradient - slopes_of(jet)), 1e-9 * (size + s.corrected));
+    EXPECT_LE(length(s.corrected_gradient - gradient_of(jet)), 1e-9 * (size + s.corrected));
     const Differences d =
         differences_of([&](const Vec3d& q) { return evaluate(blend, q).corrected_gradient; }, p, 1e-4);
     const Matrix3 exact = curvatures_of(jet);

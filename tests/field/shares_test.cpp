@@ -99,8 +99,7 @@ struct Checks {
 void expect_derivatives(const auto& first, const HessianJet& jet, const Vec3d& p, double size, Checks& checks) {
   const ShareSample here = first(p);
   EXPECT_NEAR(jet.value, here.value, 1e-9 * size);
-  EXPECT_LE(length(Vec3d{jet.slope[0], jet.slope[1], jet.slope[2]} - here.gradient),
-            1e-7 * (size + length(here.gradient)));
+  EXPECT_LE(length(gradient_of(jet) - here.gradient), 1e-7 * (size + length(here.gradient)));
   const auto slopes = [&](double h) { return numeric_gradient([&](const Vec3d& q) { return first(q).value; }, p, h); };
   const auto rows = [&](double h) {
     Matrix3 m;

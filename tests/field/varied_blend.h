@@ -17,10 +17,10 @@ class WavingAngle : public AlphaSource {
  public:
   AlphaSample at(const Vec3d& p) const override {
     const HessianJet a = second_order_at(p);
-    return {.value = a.value, .gradient = {a.slope[0], a.slope[1], a.slope[2]}};
+    return {.value = a.value, .gradient = gradient_of(a)};
   }
   HessianJet second_order_at(const Vec3d& p) const override {
-    const Vec3<HessianJet> v = variables_at(p);
+    const Vec3<HessianJet> v = variables_at<HessianJet>(p);
     return 0.4 + 0.3 * sin(v.x * v.y + v.z);
   }
   Interval bounds(const Box3& box) const override { return 0.4 + 0.3 * sincos(phase(box)).sin; }

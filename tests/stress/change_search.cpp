@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "field/number/variables_at.h"
+
 namespace marrow::test {
 namespace {
 
@@ -33,10 +35,10 @@ ChangeSearch::Sample ChangeSearch::at(double t) {
   ++samples_;
   using X = Jet<double, 3>;
   const Vec3d p = ray_.at(t);
-  const X f = marrow::value(tree_, Vec3<X>{X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)});
+  const X f = marrow::value(tree_, variables_at<X>(p));
   const double off = f.value - 1, scale = 1 + std::fabs(off);
   if (!std::isfinite(off)) return {t, off > 0 ? 1.0 : -1.0, 0};
-  const double slope = dot(Vec3d{f.slope[0], f.slope[1], f.slope[2]}, ray_.direction.vec());
+  const double slope = dot(gradient_of(f), ray_.direction.vec());
   return {t, off / scale, std::isfinite(slope) ? slope / (scale * scale) : 0};
 }
 

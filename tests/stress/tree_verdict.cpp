@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "field/number/variables_at.h"
 #include "tests/stress/change_search.h"
 
 namespace marrow::test {
@@ -41,8 +42,8 @@ struct Slopes {
 Slopes slopes_at(const TreeScene& scene, const Ray& ray, double t) {
   using X = Jet<double, 3>;
   const Vec3d p = ray.at(t);
-  const X f = value(scene.tree(), Vec3<X>{X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)});
-  const Vec3d gradient{f.slope[0], f.slope[1], f.slope[2]};
+  const X f = value(scene.tree(), variables_at<X>(p));
+  const Vec3d gradient = gradient_of(f);
   return {f.value, std::fabs(dot(gradient, ray.direction.vec())), length(gradient)};
 }
 

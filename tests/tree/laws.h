@@ -14,6 +14,7 @@
 
 #include "field/math/box3.h"
 #include "field/number/places_in.h"
+#include "field/number/variables_at.h"
 #include "tests/field/random.h"
 #include "tests/number/precise.h"
 
@@ -32,7 +33,7 @@ struct Checks {
 
 template <class T>
 Vec3<Jet<T, 3>> jet_variables(const Vec3<T>& p) {
-  return {Jet<T, 3>::variable(p.x, 0), Jet<T, 3>::variable(p.y, 1), Jet<T, 3>::variable(p.z, 2)};
+  return variables_at<Jet<T, 3>>(p);
 }
 inline Vec3<Precise> precise(const Vec3d& p) { return {p.x, p.y, p.z}; }
 inline bool contains(const Interval& bounds, Precise x) { return bounds.lo <= x.v && x.v <= bounds.hi; }
@@ -205,8 +206,7 @@ Bend bend_of(const Field& field, const Vec3d& p, const PreciseGradient& here, st
 template <class Field>
 void expect_hessian(const Field& field, const Vec3d& p, Checks& checks) {
   constexpr double kink = 1e-2;
-  const HessianJet jet = field.value(
-      Vec3<HessianJet>{HessianJet::variable(p.x, 0), HessianJet::variable(p.y, 1), HessianJet::variable(p.z, 2)});
+  const HessianJet jet = field.value(variables_at<HessianJet>(p));
   const Gradient gradient = field.value(jet_variables(p));
   ASSERT_NEAR(jet.value, gradient.value, 1e-13 * (1 + std::fabs(jet.value) + steepness(gradient)));
   for (std::size_t i = 0; i < 3; ++i)

@@ -111,7 +111,7 @@ void expect_derivatives_in_doubles(const Field& field, const Vec3d& p, bool hess
     ASSERT_NE(v, Verdict::Wrong) << "slope " << i << ": " << jet.slope[i];
   }
   if (!hessian) return;
-  const HessianJet second = field.value(Vec3<HessianJet>(variables_at(p)));
+  const HessianJet second = field.value(variables_at<HessianJet>(p));
   ASSERT_NEAR(second.value, jet.value, 1e-10 * size);
   double scale = size;
   for (const double c : second.curvature) scale += std::fabs(c);

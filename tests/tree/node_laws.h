@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "field/number/functions.h"
+#include "field/number/variables_at.h"
 #include "tests/field/random.h"
 
 namespace marrow::test {
@@ -60,11 +61,6 @@ struct WarpCoordinate {
   }
 };
 
-template <Number X>
-Vec3<X> variables(const Vec3d& p) {
-  return {X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)};
-}
-
 /// Values and slopes over a random box of side `size` hold the values and differences of points within.
 template <class Field>
 void expect_encloses(const Field& field, const Vec3d& corner, double size, Random& random) {
@@ -102,8 +98,8 @@ void expect_encloses(const Field& field, const Vec3d& corner, double size, Rando
 /// Slopes and second derivatives at a point are those of differences; at kinks either side may be taken.
 template <class Field>
 void expect_derivatives(const Field& field, const Vec3d& p, double kink = 1e-3) {
-  const Slope jet = field(variables<Slope>(p));
-  const HessianJet second = field(variables<HessianJet>(p));
+  const Slope jet = field(variables_at<Slope>(p));
+  const HessianJet second = field(variables_at<HessianJet>(p));
   const double value = field(p), h = 1e-5;
   EXPECT_NEAR(jet.value, value, 1e-13 * (1 + std::fabs(value)));
   EXPECT_NEAR(second.value, value, 1e-13 * (1 + std::fabs(value)));
@@ -115,7 +111,7 @@ void expect_derivatives(const Field& field, const Vec3d& p, double kink = 1e-3) 
     if (std::fabs(ahead - behind) > kink) continue;
     EXPECT_NEAR(jet.slope[i], 0.5 * (ahead + behind), kink) << "slope " << i;
     EXPECT_NEAR(second.slope[i], jet.slope[i], 1e-9 * (1 + std::fabs(jet.slope[i])));
-    const Slope up = field(variables<Slope>(q)), down = field(variables<Slope>(r));
+    const Slope up = field(variables_at<Slope>(q)), down = field(variables_at<Slope>(r));
     const double a = (up.slope[i] - jet.slope[i]) / h, b = (jet.slope[i] - down.slope[i]) / h;
     if (std::fabs(a - b) > 0.05 * (1 + std::fabs(a))) continue;
     EXPECT_NEAR(second.curvature[i], 0.5 * (a + b), 0.05 * (1 + std::fabs(a))) << "curvature " << i;

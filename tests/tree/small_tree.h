@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "field/number/variables_at.h"
 #include "field/tree/machine.h"
 #include "tests/tree/random_node.h"
 
@@ -68,8 +69,7 @@ struct SmallTree {
     Vec3d p;
     for (int trial = 0; trial < 6; ++trial) {
       for (std::size_t i = 0; i < 3; ++i) p[i] = random.between(box.lower[i], box.upper[i]);
-      const Jet<double, 3> f = value(Vec3<Jet<double, 3>>{
-          Jet<double, 3>::variable(p.x, 0), Jet<double, 3>::variable(p.y, 1), Jet<double, 3>::variable(p.z, 2)});
+      const Jet<double, 3> f = value(variables_at<Jet<double, 3>>(p));
       if (f.slope != std::array<double, 3>{}) break;
     }
     return p;

@@ -10,6 +10,7 @@
 #include "field/blend/correction/correction.h"
 #include "field/kernel/inverse_family.h"
 #include "field/math/elementary.h"
+#include "field/number/variables_at.h"
 #include "field/skeleton/skeletons.h"
 
 namespace marrow {
@@ -221,7 +222,7 @@ AlphaSample LocalContact::at(const Neighbourhood& place) const {
   };
   const X alpha = angle(with(place.field, place.field_gradient), with(place.spread, place.spread_gradient),
                         with(place.near_field, place.near_gradient));
-  return {.value = alpha.value, .gradient = {alpha.slope[0], alpha.slope[1], alpha.slope[2]}};
+  return {.value = alpha.value, .gradient = gradient_of(alpha)};
 }
 
 HessianJet LocalContact::at(const HessianJet& field, const HessianJet& spread, const HessianJet& near_field) const {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "field/number/places_in.h"
+#include "field/number/variables_at.h"
 #include "field/trace/cells/divider.h"
 
 namespace marrow {
@@ -22,12 +23,6 @@ constexpr double few_rays = 1.5, likely_samples = 16;
 constexpr double worth_a_copy = 0.7;
 // Neighbours overlap by more than what the errors of their fields move a root; their trees hold a little farther.
 constexpr double overlap = 1e-6, validity = 4e-6;
-
-Vec3<Jet<Interval, 3>> with_slopes(const Box3& box) {
-  using X = Jet<Interval, 3>;
-  const Vec3<Interval> p = places_in(box);
-  return {X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)};
-}
 
 bool excludes_zero(const Interval& x) { return x.lo > 0 || x.hi < 0; }
 
@@ -95,7 +90,7 @@ std::unique_ptr<const TreeCell> TreeCell::make_octant(std::size_t i) const {
   // As the larger cube sums it: enough to drop most of what can be dropped, before anything is made for it.
   if (!value(*tree_, places_in(around)).contains(1)) return {};
   FieldTree own = localized(*tree_, around);
-  const auto f = value(own, with_slopes(around));
+  const auto f = value(own, variables_at<Jet<Interval, 3>>(places_in(around)));
   if (!f.value.contains(1)) return {};
   const bool one_sheet = excludes_zero(f.slope[0]) || excludes_zero(f.slope[1]) || excludes_zero(f.slope[2]);
   const std::size_t records = own.records().size();

@@ -1,6 +1,7 @@
 // What is there at a hit: the normal, a place outside for further rays, the material.
 #include <algorithm>
 
+#include "field/number/variables_at.h"
 #include "field/trace/general/tree_fields.h"
 
 namespace marrow {
@@ -65,8 +66,8 @@ UnitVec3 TreeTracer::normal_at_joint(const Cell& c, const Vec3d& position, const
   const double step = std::max(beside_joint * c.box.size().x, 64 * shortest_step(c));
   for (const double way : {-step, step}) {
     const Vec3d p = position + along * way;
-    const X f = field_near(c, p, Vec3<X>{X::variable(p.x, 0), X::variable(p.y, 1), X::variable(p.z, 2)});
-    const Vec3d outward{-f.slope[0], -f.slope[1], -f.slope[2]};
+    const X f = field_near(c, p, variables_at<X>(p));
+    const Vec3d outward = -gradient_of(f);
     if (f.value < 1 && length(outward) > 0) return normalize(outward);
   }
   return of_member;
@@ -75,13 +76,13 @@ UnitVec3 TreeTracer::normal_at_joint(const Cell& c, const Vec3d& position, const
 SurfacePoint TreeTracer::surface_at(std::size_t cell, const Vec3d& position, const Vec3d& along) const {
   using X = Jet<double, 3>;
   const Cell& c = cells_[cell];
-  const Vec3<X> at{X::variable(position.x, 0), X::variable(position.y, 1), X::variable(position.z, 2)};
+  const Vec3<X> at = variables_at<X>(position);
   const X f = with_field_near(c, position,
                               [&](const FieldTree& tree, std::uint32_t record) { return value(tree, at, record); });
   const X others = largest_of_others(c.member, at);
-  const auto outward = [](const X& g) { return normalize(Vec3d{-g.slope[0], -g.slope[1], -g.slope[2]}); };
+  const auto outward = [](const X& g) { return normalize(-gradient_of(g)); };
   const UnitVec3 normal = others.value > 1 - of_joint ? normal_at_joint(c, position, along, outward(f)) : outward(f);
-  if (const auto outside = outside_by_slope(c, position, normal, length(Vec3d{f.slope[0], f.slope[1], f.slope[2]})))
+  if (const auto outside = outside_by_slope(c, position, normal, length(gradient_of(f))))
     return {.normal = normal, .outside = *outside, .around = {}};
   // Beside another member: away from both, or from one and back.
   const Vec3d away = others.value > 0 ? outward(others).vec() : normal.vec();

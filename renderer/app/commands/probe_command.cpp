@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "field/blend/curvature.h"
+#include "field/number/variables_at.h"
 #include "field/skeleton/second_order.h"
 #include "renderer/app/command_line/commands.h"
 #include "renderer/app/command_line/files.h"
@@ -48,10 +49,10 @@ std::string hessian_of_sum(const PlacedBlend& part, const Vec3d& p) {
 }
 
 std::string curvature_of_field(const FieldProgram& program, const Vec3d& p) {
-  const HessianJet f = second_order_value(program, variables_at(p));
+  const HessianJet f = second_order_value(program, variables_at<HessianJet>(p));
   const auto& c = f.curvature;
   const Matrix3 hessian{{Vec3d{c[0], c[5], c[4]}, Vec3d{c[5], c[1], c[3]}, Vec3d{c[4], c[3], c[2]}}};
-  const Curvature curvature = curvature_of({f.slope[0], f.slope[1], f.slope[2]}, hessian);
+  const Curvature curvature = curvature_of(gradient_of(f), hessian);
   return fmt::format(R"(, "hessian": [{}, {}, {}], "mean_curvature": {}, "gaussian_curvature": {})",
                      json(hessian.rows[0]), json(hessian.rows[1]), json(hessian.rows[2]), json(curvature.mean),
                      json(curvature.gaussian));
