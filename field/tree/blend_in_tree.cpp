@@ -138,7 +138,7 @@ class BlendInTree::Asked {
     thread_local tree::Machine<Interval, Interval> machine;
     std::size_t next = 0;
     return machine.run(of_.tree_, FieldTree::whole, p_, Interval(0),
-                       [&](std::uint32_t record, const Vec3<Interval>& at, std::span<const Interval> children) {
+                       [&](std::uint32_t record, const tree::Place<Interval>& at, std::span<const Interval> children) {
                          if (record == of_.leaf_) return of_blend;
                          const FieldTree::Record& r = of_.tree_.records()[record];
                          if (!children.empty()) return tree::value_of_record(of_.tree_, r, at, children);

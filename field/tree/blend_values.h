@@ -5,7 +5,7 @@
 #include "field/blend/bounds/blend_bounds.h"
 #include "field/blend/local/local_blend.h"
 #include "field/number/functions.h"
-#include "field/tree/straight_way.h"
+#include "field/tree/place.h"
 
 namespace marrow::tree {
 
@@ -20,18 +20,18 @@ Jet<T, N> composed(const T& value, const Vec3<T>& gradient, const Vec3<Jet<T, N>
 
 inline Box3 box_of(const Vec3<Interval>& p) { return {{p.x.lo, p.y.lo, p.z.lo}, {p.x.hi, p.y.hi, p.z.hi}}; }
 
-/// From bounds(box, stretch) of a ray, where it is straight of what lies on it alone.
-template <class Bounds>
-Jet<Interval, 1> on_ray(const Vec3<Jet<Interval, 1>>& p, const Bounds& bounds) {
-  const Box3 box = box_of({p.x.value, p.y.value, p.z.value});
-  if (const auto way = straight_way(p)) {
-    const BlendBounds b = bounds(box, &*way);
-    Jet<Interval, 1> r(b.value);
-    r.slope[0] = b.along;
-    return r;
-  }
-  const BlendBounds b = bounds(box, nullptr);
-  return composed(b.value, b.gradient, p);
+/// From bounds(box, within), of as little as is known to hold the place.
+template <std::size_t N, class Bounds>
+Jet<Interval, N> enclosed_at(const Place<Jet<Interval, N>>& at, const Bounds& bounds) {
+  const auto part = at.part();
+  const BlendBounds b = part ? bounds(part->box, Within(&part->shape)) : bounds(at.box(), Within());
+  if constexpr (N == 1)
+    if (part) {
+      Jet<Interval, 1> r(b.value);
+      r.slope[0] = b.along;
+      return r;
+    }
+  return composed(b.value, b.gradient, at.p);
 }
 
 inline double blend_value(const BlendField& blend, const Vec3d& p) { return corrected_value(blend, p); }
@@ -49,13 +49,9 @@ inline Interval blend_value(const BlendField& blend, const Vec3<Interval>& p) {
 }
 
 template <std::size_t N>
-Jet<Interval, N> blend_value(const BlendField& blend, const Vec3<Jet<Interval, N>>& p) {
-  const BlendBounds b = blend_bounds(blend, box_of({p.x.value, p.y.value, p.z.value}));
-  return composed(b.value, b.gradient, p);
-}
-
-inline Jet<Interval, 1> blend_value(const BlendField& blend, const Vec3<Jet<Interval, 1>>& p) {
-  return on_ray(p, [&](const Box3& box, const Stretch* way) { return blend_bounds(blend, box, Wanted::Slopes, way); });
+Jet<Interval, N> blend_value(const BlendField& blend, const Place<Jet<Interval, N>>& at) {
+  return enclosed_at(
+      at, [&](const Box3& box, const Within& within) { return blend_bounds(blend, box, Wanted::Slopes, within); });
 }
 
 /// The same of a part of space.
@@ -72,13 +68,15 @@ inline Interval blend_value(const LocalBlend& blend, const Vec3<Interval>& p) {
 }
 
 template <std::size_t N>
-Jet<Interval, N> blend_value(const LocalBlend& blend, const Vec3<Jet<Interval, N>>& p) {
-  const BlendBounds b = blend.bounds(box_of({p.x.value, p.y.value, p.z.value}));
-  return composed(b.value, b.gradient, p);
+Jet<Interval, N> blend_value(const LocalBlend& blend, const Place<Jet<Interval, N>>& at) {
+  return enclosed_at(at,
+                     [&](const Box3& box, const Within& within) { return blend.bounds(box, Wanted::Slopes, within); });
 }
 
-inline Jet<Interval, 1> blend_value(const LocalBlend& blend, const Vec3<Jet<Interval, 1>>& p) {
-  return on_ray(p, [&](const Box3& box, const Stretch* way) { return blend.bounds(box, Wanted::Slopes, way); });
+/// Of a place of which its enclosure is all that counts.
+template <class Blend, Number X>
+auto blend_value(const Blend& blend, const Place<X>& at) -> decltype(blend_value(blend, at.p)) {
+  return blend_value(blend, at.p);
 }
 
 }  // namespace marrow::tree

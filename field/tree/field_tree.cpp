@@ -297,10 +297,11 @@ FieldTree restriction(const FieldTree& tree, const Box3& box, std::uint32_t belo
   const Vec3<Interval> p = places_in(box);
   Restriction restriction(tree, with_local_blends);
   tree::Machine<Interval, Part> machine;
-  const Part root = machine.run(tree, below, p, Part{},
-                                [&](std::uint32_t record, const Vec3<Interval>& at, std::span<const Part> children) {
-                                  return restriction.add(record, at, children);
-                                });
+  const Part root =
+      machine.run(tree, below, p, Part{},
+                  [&](std::uint32_t record, const tree::Place<Interval>& at, std::span<const Part> children) {
+                    return restriction.add(record, at.p, children);
+                  });
   return std::move(restriction).tree(root.record);
 }
 

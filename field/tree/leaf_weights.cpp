@@ -68,11 +68,11 @@ std::vector<LeafWeight> leaf_weights(const FieldTree& tree, const Vec3d& p, std:
   tree::Machine<double, std::size_t> machine;
   std::vector<double> values;
   machine.run(tree, below, p, nothing,
-              [&](std::uint32_t record, const Vec3d& at, std::span<const std::size_t> children) {
+              [&](std::uint32_t record, const tree::Place<double>& at, std::span<const std::size_t> children) {
                 values.clear();
                 for (const std::size_t c : children) values.push_back(c == nothing ? 0 : visits[c].value);
                 visits.push_back({record,
-                                  at,
+                                  at.p,
                                   tree::value_of_record<double>(tree, tree.records()[record], at, values),
                                   0,
                                   {children.begin(), children.end()}});

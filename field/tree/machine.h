@@ -47,11 +47,11 @@ X of_all_sides(std::span<const X> places) {
 }
 
 template <Number X>
-X value_of_node(const TreeNode& node, const Vec3<X>& p, std::span<const X> children) {
+X value_of_node(const TreeNode& node, const Place<X>& at, std::span<const X> children) {
   return std::visit(
       [&]<class Node>(const Node& n) -> X {
-        if constexpr (std::same_as<Node, BlendLeaf>) return blend_value(*n.field, p);
-        else if constexpr (Primitive<Node, X>) return n.value(p);
+        if constexpr (std::same_as<Node, BlendLeaf>) return blend_value(*n.field, at);
+        else if constexpr (Primitive<Node, X>) return n.value(at.p);
         else if constexpr (Warp<Node, X>) return of_all_sides(children);
         else return n.value(children);
       },
@@ -60,11 +60,15 @@ X value_of_node(const TreeNode& node, const Vec3<X>& p, std::span<const X> child
 
 /// The same of a record, whose blend may be summed as the part of space of its tree allows.
 template <Number X>
-X value_of_record(const FieldTree& tree, const FieldTree::Record& record, const Vec3<X>& p,
+X value_of_record(const FieldTree& tree, const FieldTree::Record& record, const Place<X>& at,
                   std::span<const X> children) {
-  if constexpr (requires { blend_value(*record.local, p); })
-    if (record.local) return blend_value(*record.local, p);
-  return value_of_node(tree.node(record), p, children);
+  if constexpr (requires { blend_value(*record.local, at); })
+    if (record.local) return blend_value(*record.local, at);
+  return value_of_node(tree.node(record), at, children);
+}
+
+inline bool is_warp(const TreeNode& node) {
+  return std::visit([]<class Node>(const Node&) { return Warp<Node, double>; }, node);
 }
 
 template <Number X>
@@ -95,9 +99,20 @@ Vec3<X> points_of_children(const TreeNode& node, const Vec3<X>& p, std::vector<V
       node);
 }
 
-/// Calls visit(record index, p, values of its children) -> value for `start` and every node below that p's support test
-/// leaves, children first; `none` stands for the others. A child behind a cut has a value for each of its places, where
-/// values are numbers. The stacks are kept between calls.
+/// The same of a place; where it becomes several, no middle is known of any.
+template <Number X>
+Place<X> place_of_children(const TreeNode& node, const Place<X>& at, std::vector<Vec3<X>>& further) {
+  if (!is_warp(node)) return at;
+  const std::size_t before = further.size();
+  const Vec3<X> inner = points_of_children(node, at.p, further);
+  if constexpr (is_enclosure<X> && JetNumber<X>)
+    if (at.knows_middle && further.size() == before) return at.moved(inner, point_of_children(node, at.middle));
+  return inner;
+}
+
+/// Calls visit(record index, place, values of its children) -> value for `start` and every node below that p's support
+/// test leaves, children first; `none` stands for the others. A child behind a cut has a value for each of its places,
+/// where values are numbers. The stacks are kept between calls.
 template <Number X, class Value>
 class Machine {
  public:
@@ -107,13 +122,13 @@ class Machine {
     values_.clear();
     further_.clear();
     if (tree.records().empty()) return none;
-    enter(tree, start == FieldTree::whole ? tree.root() : start, p, none);
+    enter(tree, start == FieldTree::whole ? tree.root() : start, Place<X>::outermost(p), none);
     while (!frames_.empty()) {
       Frame& top = frames_.back();
       const FieldTree::Record& record = tree.records()[top.record];
       if (top.next < record.child_count) {
         const std::uint32_t child = tree.children(record)[top.next++];
-        const Vec3<X> at = top.inner;
+        const Place<X> at = top.inner;
         enter(tree, child, at, none);
         continue;
       }
@@ -136,19 +151,19 @@ class Machine {
   struct Frame {
     std::uint32_t record, next;
     std::size_t values, further;  // how much of the stacks belongs to those above
-    Vec3<X> outer, inner;         // p in the node's coordinates and in its children's
+    Place<X> outer, inner;        // in the node's coordinates and in its children's
   };
-  void enter(const FieldTree& tree, std::uint32_t index, const Vec3<X>& p, const Value& none) {
+  void enter(const FieldTree& tree, std::uint32_t index, const Place<X>& at, const Value& none) {
     const FieldTree::Record& record = tree.records()[index];
-    if (misses(record.support, p)) {
+    if (misses(record.support, at.p)) {
       values_.push_back(none);
       return;
     }
     const std::size_t further = further_.size();
-    Vec3<X> inner;
-    if constexpr (std::same_as<X, Value>) inner = points_of_children(tree.node(record), p, further_);
-    else inner = point_of_children(tree.node(record), p);
-    frames_.push_back({index, 0, values_.size(), further, p, inner});
+    Place<X> inner;
+    if constexpr (std::same_as<X, Value>) inner = place_of_children(tree.node(record), at, further_);
+    else inner = point_of_children(tree.node(record), at.p);
+    frames_.push_back({index, 0, values_.size(), further, at, inner});
   }
 
   std::vector<Frame> frames_;

@@ -36,7 +36,7 @@ template <Number X>
 X value(const FieldTree& tree, const Vec3<X>& p, std::uint32_t below) {
   BorrowedMachine<X> machine;
   return machine.get().run(tree, below, p, X(0.0),
-                           [&](std::uint32_t record, const Vec3<X>& at, std::span<const X> children) {
+                           [&](std::uint32_t record, const tree::Place<X>& at, std::span<const X> children) {
                              return tree::value_of_record(tree, tree.records()[record], at, children);
                            });
 }

@@ -28,6 +28,8 @@ void check_place(const SumBounds& sum, const SkeletonSample& at, const SkeletonS
                  Told& told) {
   const double slope_error = error * (1 + length(at.gradient)), bent = length(middle.si_jacobian.rows[0]);
   expect_in(sum.f(), at.value, error * at.value, "f");
+  if (sum.unbounded()) return;
+  EXPECT_LE(length(at.si_gradient), sum.longest_S() + slope_error);
   for (std::size_t i = 0; i < 3; ++i) {
     expect_in(sum.S()[i], at.si_gradient[i], slope_error, "S");
     if (!sum.has_slopes()) continue;
@@ -41,19 +43,40 @@ void check_place(const SumBounds& sum, const SkeletonSample& at, const SkeletonS
   }
 }
 
-// Along the stretch from -1 to 1.
+// A vector no longer than that.
+Vec3d within(Random& random, double length) { return normalize(random.vector(1)) * (length * random.between(0, 1)); }
+
+// Along the stretch from -1 to 1, which is straight or not quite.
 void check_stretch(const BlendField& blend, const Vec3d& center, const Vec3d& half, double error, Random& random) {
-  const Stretch way{half, normalize(half), 0};
-  const Box3 box = Box3{center, center}.padded(max_component(abs(half)));
+  const double bent = random.between(0, 1) < 0.5 ? 0 : random.between(0, 0.5);
+  const Stretch way{half, normalize(half), bent * length(half), bent};
+  const Box3 box = Box3{center, center}.padded(max_component(abs(half)) + way.slack);
   const SumBounds sum(blend, box, Wanted::Slopes, &way);
   for (int k = 0; k < 4; ++k) {
-    const auto at = sum_of_primitives<Derivatives::Second>(blend, center + half * random.between(-1, 1));
+    const Vec3d p = center + half * random.between(-1, 1) + within(random, way.slack);
+    const Vec3d along = way.direction + within(random, way.turn);
+    const auto at = sum_of_primitives<Derivatives::Second>(blend, p);
     expect_in(sum.f(), at.value, error * at.value, "f of a stretch");
     if (!sum.has_slopes()) continue;
-    expect_in(sum.f_along(), dot(at.gradient, way.direction), error * (1 + length(at.gradient)), "its slope");
+    EXPECT_LE(length(at.si_gradient), sum.longest_S() + error);
+    expect_in(sum.f_along(), dot(at.gradient, along), error * (1 + length(at.gradient)), "its slope");
     for (std::size_t i = 0; i < 3; ++i)
-      expect_in(sum.S_along(i), dot(at.si_jacobian.rows[i], way.direction),
-                error * (1 + length(at.si_jacobian.rows[i])), "slope of S");
+      expect_in(sum.S_along(i), dot(at.si_jacobian.rows[i], along), error * (1 + length(at.si_jacobian.rows[i])),
+                "slope of S");
+  }
+}
+
+// In a box that is turned and sheared, and a little beyond.
+void check_skew_box(const BlendField& blend, const Vec3d& center, double half, const SkeletonSample& middle,
+                    double error, Random& random, Told& told) {
+  const SkewBox skew{{random.vector(half), random.vector(half), random.vector(half)}, random.between(0, 0.2) * half};
+  const Box3 box = Box3{center, center}.padded(3.2 * half);
+  const SumBounds sum(blend, box, Wanted::Slopes, &skew);
+  EXPECT_LT(sum.rho(), 0.5 * length(box.size()));
+  for (int k = 0; k < 4; ++k) {
+    Vec3d p = center + within(random, skew.slack);
+    for (const Vec3d& way : skew.halves) p += way * random.between(-1, 1);
+    check_place(sum, sum_of_primitives<Derivatives::Second>(blend, p), middle, error, told);
   }
 }
 
@@ -71,6 +94,7 @@ Told check_sums(const std::function<BlendField(Random&)>& draw, unsigned seed, i
       check_place(sum, sum_of_primitives<Derivatives::Second>(blend, center + random.vector(half)), middle, error,
                   told);
     check_stretch(blend, center, random.vector(half), error, random);
+    check_skew_box(blend, center, half, middle, error, random, told);
     EXPECT_FALSE(testing::Test::HasFailure()) << "case " << i << ", half size " << half << ", degree " << blend.degree;
   }
   return told;
@@ -86,6 +110,21 @@ BlendField compact_blend(Random& random, int least_degree) {
 
 // A radius and one that is up to five times as large.
 double wider(Random& random, double radius) { return radius * random.between(1, 5); }
+
+TEST(SumBounds, HoldForPointsAndSegmentsOfEndlessKernels) {
+  const auto draw = [](Random& random) {
+    BlendField blend;
+    blend.degree = random.whole(3, 9);
+    blend.kernel = random.between(0, 1) < 0.5 ? KernelFamily::Inverse : KernelFamily::Cauchy;
+    blend.kernel_shape = random.between(0.5, 3);
+    for (int i = 0; i < 3; ++i) blend.points.add(random.point(), {});
+    for (int i = 0; i < 2; ++i) blend.segments.add(random.segment(), {});
+    return blend;
+  };
+  const Told told = check_sums(draw, 60, 1500, 1e-8);
+  EXPECT_GT(told.gradients, 8000);
+  EXPECT_GT(told.Js, 15000);
+}
 
 TEST(SumBounds, HoldForTaperedSegmentsOfCompactSupport) {
   const auto draw = [](Random& random) {

@@ -16,7 +16,7 @@ struct Leaf {
   BlendField blend;
   template <Number X>
   X value(const Vec3<X>& p) const {
-    return tree::blend_value(blend, p);
+    return tree::blend_value(blend, tree::Place<X>::outermost(p));
   }
   // What the doubles themselves may be off.
   double rounding() const { return blend.kernel == KernelFamily::Compact && !blend.arcs.empty() ? 1e-7 : 1e-11; }

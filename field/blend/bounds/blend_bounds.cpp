@@ -45,7 +45,8 @@ Interval slope_along(const SumBounds& sum, const PartialBounds& by, const Vec3<I
   for (std::size_t i = 0; i < 3; ++i) {
     G_slope += clamped(S[i] / G, {-1, 1}) * sum.S_along(i);
     if (alpha_gradient[i] == Interval(0)) continue;  // stays 0, as dC/dalpha may not be known
-    alpha_slope += alpha_gradient[i] * Interval(sum.stretch()->direction[i]);
+    const double along = sum.stretch()->direction[i], turn = sum.stretch()->turn;
+    alpha_slope += alpha_gradient[i] * Interval(along - turn, along + turn);
   }
   return by.df * sum.f_along() + by.dG * G_slope + by.dalpha * alpha_slope;
 }
@@ -70,9 +71,9 @@ BlendBounds bounds_on_curve(const SumBounds& sum) {
 
 }  // namespace
 
-BlendBounds blend_bounds(const BlendField& blend, const Box3& box, Wanted wanted, const Stretch* stretch) {
+BlendBounds blend_bounds(const BlendField& blend, const Box3& box, Wanted wanted, const Within& within) {
   if (!is_finite(box.center()) || !is_finite(box.size())) return {{0, inf}, unknown};
-  const SumBounds sum(blend, box, wanted, stretch);
+  const SumBounds sum(blend, box, wanted, within);
   const AngleBounds angle = alpha_bounds(blend, sum, box);
   return blend_bounds(blend, sum, angle, correction_at(blend, angle.value.lo));
 }
@@ -88,7 +89,8 @@ BlendBounds blend_bounds(const BlendField& blend, const SumBounds& sum, const An
   }
   if (sum.is_on_curve() && alpha.lo >= 0 && f.hi < largest_left_alone(least)) return bounds_on_curve(sum);
   const Vec3<Interval> S = sum.S();
-  const Interval G = sqrt(square(S.x) + square(S.y) + square(S.z));
+  const Interval by_parts = sqrt(square(S.x) + square(S.y) + square(S.z));
+  const Interval G(by_parts.lo, std::min(by_parts.hi, std::max(by_parts.lo, sum.longest_S())));
   BlendBounds b{.value = corrected(blend, least, alpha, f, G), .gradient = unknown};
   if (!sum.has_slopes()) return b;
   const PartialBounds by = partial_bounds(blend, least, alpha, b.value, f, G);

@@ -18,9 +18,9 @@ struct BlendBounds {
 /// From one exact sample in the middle of the box and bounds of the derivatives of each primitive, which follow from
 /// its least distance: widths shrink with the square of the box for the sums, linearly for the corrected field.
 /// Boxes that reach a skeleton have no upper bound.
-/// For Wanted::Value alone the gradient may be everything. With a stretch, whose middle is that of the box, bounds are
-/// of places on it alone, and its slope stands in `along` instead of the gradient.
-BlendBounds blend_bounds(const BlendField&, const Box3&, Wanted = Wanted::Slopes, const Stretch* = nullptr);
+/// For Wanted::Value alone the gradient may be everything. Within a stretch or a skew box bounds are of its places
+/// alone; the slope of a stretch stands in `along` instead of the gradient.
+BlendBounds blend_bounds(const BlendField&, const Box3&, Wanted = Wanted::Slopes, const Within& = {});
 /// The same from bounds of the sums and of the angle, and the correction of the least angle.
 BlendBounds blend_bounds(const BlendField&, const SumBounds&, const AngleBounds&, const Correction& least);
 

@@ -168,9 +168,9 @@ LocalBlend::Sample LocalBlend::evaluate(const Vec3d& p) const {
   return {c.value, gradient};
 }
 
-BlendBounds LocalBlend::bounds(const Box3& box, Wanted wanted, const Stretch* stretch) const {
-  if (!is_finite(box.center()) || !is_finite(box.size())) return blend_bounds(blend_, box, wanted, stretch);
-  SumBounds sum(rest_, box, wanted, stretch);
+BlendBounds LocalBlend::bounds(const Box3& box, Wanted wanted, const Within& within) const {
+  if (!is_finite(box.center()) || !is_finite(box.size())) return blend_bounds(blend_, box, wanted, within);
+  SumBounds sum(rest_, box, wanted, within);
   for_each_sums([&](const SourceSums& s) { sum.add(s); });
   if (const FarPolynomial* far = last().far_.get()) sum.add(*far);
   return blend_bounds(blend_, sum, {blend_.alpha, {}}, correction_);

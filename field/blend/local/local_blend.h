@@ -36,7 +36,7 @@ class LocalBlend {
   };
   Sample evaluate(const Vec3d& p) const;
   /// As blend_bounds(), for a box in the box: of this field, whose slopes are those of its sums.
-  BlendBounds bounds(const Box3&, Wanted = Wanted::Slopes, const Stretch* = nullptr) const;
+  BlendBounds bounds(const Box3&, Wanted = Wanted::Slopes, const Within& = {}) const;
 
   /// Primitives, or parts of them, that are still summed as they are but would not be in smaller boxes.
   std::size_t near_count() const;

@@ -174,7 +174,8 @@ SourceSample SourceSums::at(const Vec3d& p) const {
   s.sum.value = total(t.f);
   s.sum.si_gradient = total(t.S) * -m;
   s.sum.gradient = total(t.gradient) * -m;
-  const double k = -m * total(t.k), yz = bend * total(t.J[3]), xz = bend * total(t.J[4]), xy = bend * total(t.J[5]);
+  s.pull = total(t.k);
+  const double k = -m * s.pull, yz = bend * total(t.J[3]), xz = bend * total(t.J[4]), xy = bend * total(t.J[5]);
   s.sum.si_jacobian.rows = {Vec3d{k + bend * total(t.J[0]), xy, xz}, Vec3d{xy, k + bend * total(t.J[1]), yz},
                             Vec3d{xz, yz, k + bend * total(t.J[2])}};
   s.second = total(t.second);

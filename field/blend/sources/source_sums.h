@@ -22,6 +22,7 @@ struct Source {
 struct SourceSample {
   SkeletonSample sum;
   double second = 0;                                         ///< sum w D^-(m+2)
+  double pull = 0;                                           ///< sum w tau D^-(m+2)
   double third = 0;                                          ///< sum w tau D^-(m+3)
   double nearest = std::numeric_limits<double>::infinity();  ///< least D
 };

@@ -13,7 +13,7 @@ namespace {
 
 // 2^6 cells along the longest side: finer cells cost more to make than they save. Deeper only where a tree of many
 // nodes goes on getting smaller, or a blend still has skeletons that are too near for sums over nodes.
-constexpr int max_level = 6, max_level_of_leaf = 5, max_level_near = 11, max_level_of_many = 24;
+constexpr int max_level = 7, max_level_of_leaf = 5, max_level_near = 11, max_level_of_many = 24;
 constexpr std::size_t many_records = 64;
 // Cells of that level and deeper need more rays than so many of a camera in the half side (README). Where samples are
 // not known they are taken to be as many as a picture mostly has.

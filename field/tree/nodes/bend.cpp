@@ -1,5 +1,7 @@
 #include "field/tree/nodes/bend.h"
 
+#include <cmath>
+
 #include "field/tree/nodes/cylinder_hull.h"
 
 namespace marrow {
@@ -18,15 +20,25 @@ Box3 Bend::support(const Box3& child) const {
   return CylinderHull{extent->bottom, extent->top, reach}.box(center, side);
 }
 
-// Extreme at corners of a box without the origin.
+namespace {
+
+// Of the place (u, v), to within what root, quotient and arc tangent round, an ulp each or less.
+Interval angle_at(double v, double u) {
+  const double r = std::sqrt(u * u + v * v), angle = 2 * marrow::atan(u < 0 ? (r - u) / v : v / (r + u));
+  const double off = 8 * rounding::ulp * std::fabs(angle);
+  return {rounding::down(angle - off), rounding::up(angle + off)};
+}
+
+}  // namespace
+
+// Extreme at corners of a box that the cut does not run through: with y positive it falls along x, with x negative it
+// falls along y.
 Interval Bend::angle_over(const Interval& y, const Interval& x) {
   const double most = std::numbers::pi * (1 + 1e-15);
   if (is_cut(y, x)) return {-most, most};
-  const auto corner = [](double v, double u) {
-    const Interval Y = v, X = u, r = sqrt(square(X) + square(Y));
-    return Interval(2) * (u < 0 ? atan((r - X) / Y) : atan(Y / (r + X)));
-  };
-  const Interval all = hull(hull(corner(y.lo, x.lo), corner(y.lo, x.hi)), hull(corner(y.hi, x.lo), corner(y.hi, x.hi)));
+  const double least_at = y.lo > 0 ? x.hi : x.lo, most_at = y.hi < 0 ? x.hi : x.lo;
+  const Interval all(angle_at(least_at < 0 ? y.hi : y.lo, least_at).lo,
+                     angle_at(most_at < 0 ? y.lo : y.hi, most_at).hi);
   return clamped(all, {-most, most});
 }
 

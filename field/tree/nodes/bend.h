@@ -45,7 +45,7 @@ struct Bend {
         [&](const X& between) { return X(polar.radius) * between; });
     const X over = in_three(
         at, [&](double end) { return polar.over_at_end(end); }, [&](const X&) { return polar.over_between(); });
-    return polar.child(p, straight, over);
+    return polar.child(straight, over);
   }
 
   static constexpr std::size_t most_sides = 4;
@@ -65,10 +65,10 @@ struct Bend {
       const double half = angle / 2, least = least_angle_at_cut(y, x);
       std::size_t count = 0;
       for (const double sign : {-1.0, 1.0}) {
-        places[count++] = polar.child(p, polar.straight_at_end(sign * half), polar.over_at_end(sign * half));
+        places[count++] = polar.child(polar.straight_at_end(sign * half), polar.over_at_end(sign * half));
         if (!(least <= half)) continue;
         const X at = any_slope<X>(hull(Interval(sign * least), Interval(sign * half)));
-        places[count++] = polar.child(p, X(polar.radius) * at, polar.over_between());
+        places[count++] = polar.child(X(polar.radius) * at, polar.over_between());
       }
       return count;
     } else {
@@ -84,22 +84,24 @@ struct Bend {
   template <Number X>
   struct Polar {
     double radius;
-    Vec3<X> y, z;
-    X along, height, below;
+    Vec3<X> center, x, y, z;
+    X aside, along, below;
 
-    Polar(const Bend& bend, const Vec3<X>& p)
-        : radius(bend.radius()), y(constant<X>(bend.axis)), z(constant<X>(normalize(bend.across()))) {
-      const Vec3<X> v = p - constant<X>(bend.center);
+    Polar(const Bend& bend, const Vec3<X>& p) : radius(bend.radius()), center(constant<X>(bend.center)) {
+      const UnitVec3 across = normalize(bend.across());
+      x = constant<X>(cross(bend.axis.vec(), across.vec()));
+      y = constant<X>(bend.axis);
+      z = constant<X>(across);
+      const Vec3<X> v = p - center;
+      aside = dot(v, x);
       along = dot(v, y);
-      height = dot(v, z);
-      below = X(radius) - height;
+      below = X(radius) - dot(v, z);
     }
     X straight_at_end(double end) const { return X(radius * end) + (along * X(cos(end)) - below * X(sin(end))); }
     X over_at_end(double end) const { return X(radius) - (along * X(sin(end)) + below * X(cos(end))); }
     X over_between() const { return X(radius) - sqrt(square(along) + square(below)); }
-    Vec3<X> child(const Vec3<X>& p, const X& straight, const X& over) const {
-      return p + y * (straight - along) + z * (over - height);
-    }
+    /// Each coordinate anew, as boxes of p and of what is taken away from it would add up.
+    Vec3<X> child(const X& straight, const X& over) const { return center + x * aside + y * straight + z * over; }
   };
 
   Vec3d across() const { return toward.vec() - axis * dot(axis, toward); }

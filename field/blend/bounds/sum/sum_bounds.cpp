@@ -19,15 +19,25 @@ Interval pad(double x, double by) { return {rounding::down(x - by), rounding::up
 
 }  // namespace
 
-SumBounds::SumBounds(const Box3& box, const Stretch* stretch)
-    : box_(box), center_(box.center()), rho_(0.5 * length(box.size()) * (1 + 1e-15)) {
-  if (stretch == nullptr) return;
-  stretch_ = *stretch;
-  rho_ = length(stretch->half) * (1 + 1e-15) + stretch->slack;
+double SkewBox::radius() const {
+  const auto& [a, b, c] = halves;
+  const double longest = std::max({length(a + b + c), length(a + b - c), length(a - b + c), length(a - b - c)});
+  return longest * (1 + 1e-15) + slack;
 }
 
-SumBounds::SumBounds(const BlendField& blend, const Box3& box, Wanted wanted, const Stretch* stretch)
-    : SumBounds(box, stretch) {
+SumBounds::SumBounds(const Box3& box, const Within& within)
+    : box_(box), center_(box.center()), rho_(0.5 * length(box.size()) * (1 + 1e-15)) {
+  if (within.stretch != nullptr) {
+    stretch_ = *within.stretch;
+    rho_ = length(stretch_->half) * (1 + 1e-15) + stretch_->slack;
+  } else if (within.skew != nullptr) {
+    skew_ = *within.skew;
+    rho_ = skew_->radius();
+  }
+}
+
+SumBounds::SumBounds(const BlendField& blend, const Box3& box, Wanted wanted, const Within& within)
+    : SumBounds(box, within) {
   has_gradient_ = wanted == Wanted::Slopes;
   keeps_parts_ = blend.alpha_per_skeleton || !blend.direction_bounds.empty();
   if (blend.kernel == KernelFamily::Inverse) add_inverse(blend);
@@ -48,6 +58,8 @@ void SumBounds::add(const SkeletonSample& s, double distance, double radius, int
     return;
   }
   const double shrink = 1 / (1 - q), grown = integer_power(shrink, m + 2) * s.value / (distance * distance);
+  const double most = integer_power(shrink, m) * s.value;
+  add(Most{most, most * shrink * m * radius / distance});
   f_ += s.value;
   low_ += s.value / integer_power(1 + q, m) * (1 - 1e-10);
   gradient_ += s.gradient;
@@ -82,6 +94,7 @@ void SumBounds::add(const SkeletonSample& s, const Smooth& b) {
     slope_error_ += b.steepest;
   }
   low_ += std::max(0.0, s.value * (1 - compact_error) - b.steepest * rho_);
+  add(Most{s.value * (1 + compact_error) + b.steepest * rho_, longest});
   const bool is_near = S_by < longest;
   if (is_near) S_ += s.si_gradient;
   if (is_near && has_J) J_ += s.si_jacobian;
@@ -103,6 +116,9 @@ void SumBounds::add(const SourceSums& sources) {
     return;
   }
   const double shrink = (1 + 1e-12) / (1 - q), grown = integer_power(shrink, m + 2);
+  // The sum of w tau D^-(m+1) is at most the mean of those of w tau D^-m and w tau D^-(m+2) [Cauchy, Schwarz].
+  const double most = integer_power(shrink, m);
+  add(Most{most * f, most * shrink * m * std::sqrt(f * sources.largest_radius() * s.pull)});
   f_ += f;
   gradient_ += s.sum.gradient;
   S_ += s.sum.si_gradient;
@@ -121,6 +137,7 @@ void SumBounds::add(const FarPolynomial& far) {
   log_slope_ = std::max(log_slope_, b.log_slope);
   f_ += s.value;
   low_ += std::max(0.0, s.value * (1 - 1e-10) - b.steepest * rho_);
+  add(Most{s.value * (1 + sample_error) + b.steepest * rho_, b.S_longest});
   gradient_ += s.gradient;
   S_ += s.si_gradient;
   J_ += s.si_jacobian;
@@ -129,6 +146,11 @@ void SumBounds::add(const FarPolynomial& far) {
   error_ += sample_error * s.value;
   slope_error_ += sample_error * b.steepest;
   S_error_ += sample_error * b.S_longest;
+}
+
+void SumBounds::add(const Most& b) {
+  most_.f += b.f;
+  most_.S += b.S;
 }
 
 void SumBounds::add(const Between& b) {
@@ -152,43 +174,51 @@ void SumBounds::add(const Between& b) {
     unbounded_ = true;
     return;
   }
+  add(Most{f.hi, length(b.S) + b.S_by});
   f_ += f.middle();
   error_ += 0.5 * f.width() * (1 + 1e-15) + 1e-15 * f.hi;
   S_ += b.S;
   S_error_ += b.S_by;
 }
 
-Interval SumBounds::side(std::size_t i) const { return Interval(box_.lower[i], box_.upper[i]) - Interval(center_[i]); }
-
 // How much something of this slope changes from the middle on.
-Interval SumBounds::way(const Vec3d& slope) const {
-  const double by = std::fabs(dot(slope, stretch_->half)) + length(slope) * (stretch_->slack + 1e-15 * rho_);
-  return {rounding::down(-by), rounding::up(by)};
+Interval SumBounds::change(const Vec3d& slope) const {
+  const double rounded = 1e-15 * rho_;
+  const auto either_way = [](double by) { return Interval(rounding::down(-by), rounding::up(by)); };
+  if (stretch_) return either_way(std::fabs(dot(slope, stretch_->half)) + length(slope) * (stretch_->slack + rounded));
+  if (skew_) {
+    double by = length(slope) * (skew_->slack + 3 * rounded);
+    for (const Vec3d& half : skew_->halves) by += std::fabs(dot(slope, half));
+    return either_way(by);
+  }
+  Interval all;
+  for (std::size_t i = 0; i < 3; ++i)
+    all += Interval(slope[i]) * (Interval(box_.lower[i], box_.upper[i]) - Interval(center_[i]));
+  return all;
 }
 
 Interval SumBounds::f_along() const {
   const Vec3d& d = stretch_->direction;
-  const double size = length(d) * (1 + 1e-12);
-  Interval x = pad(dot(gradient_, d), size * (second_ * rho_ + slope_error_ + 1e-14 * length(gradient_)));
-  for (std::size_t i = 0; i < 3; ++i) x += between_.gradient[i] * Interval(d[i]);
+  const double turn = stretch_->turn, size = length(d) * (1 + 1e-12) + turn;
+  Interval x = pad(dot(gradient_, d),
+                   size * (second_ * rho_ + slope_error_ + 1e-14 * length(gradient_)) + turn * length(gradient_));
+  for (std::size_t i = 0; i < 3; ++i) x += between_.gradient[i] * pad(d[i], turn);
   return x;
 }
 
 Interval SumBounds::S_along(std::size_t i) const {
   const Vec3d& d = stretch_->direction;
-  const double size = length(d) * (1 + 1e-12), row = length(J_.rows[i]);
-  Interval x = pad(dot(J_.rows[i], d), size * (S_second_ * rho_ + sample_error * row + J_error_));
-  for (std::size_t j = 0; j < 3; ++j) x += between_.J[i][j] * Interval(d[j]);
+  const double turn = stretch_->turn, size = length(d) * (1 + 1e-12) + turn, row = length(J_.rows[i]);
+  Interval x = pad(dot(J_.rows[i], d), size * (S_second_ * rho_ + sample_error * row + J_error_) + turn * row);
+  for (std::size_t j = 0; j < 3; ++j) x += between_.J[i][j] * pad(d[j], turn);
   return x;
 }
 
 Interval SumBounds::f() const {
   if (unbounded_) return {low_ * (1 - 1e-12), inf};
   Interval x = pad(f_, error_ + 0.5 * second_ * rho_ * rho_);
-  if (stretch_) x += way(gradient_);
-  else
-    for (std::size_t i = 0; i < 3; ++i) x += Interval(gradient_[i]) * side(i);
-  return {std::max({0.0, x.lo, low_ * (1 - 1e-12)}), std::max(0.0, x.hi)};
+  x += change(gradient_);
+  return {std::max({0.0, x.lo, low_ * (1 - 1e-12)}), std::max(0.0, std::min(x.hi, most_.f * (1 + 1e-9)))};
 }
 
 Vec3<Interval> SumBounds::gradient() const {
@@ -200,12 +230,7 @@ Vec3<Interval> SumBounds::gradient() const {
 Vec3<Interval> SumBounds::S() const {
   Vec3<Interval> s;
   const double by = S_error_ + 0.5 * S_second_ * rho_ * rho_;
-  for (std::size_t i = 0; i < 3; ++i) {
-    s[i] = pad(S_[i], by);
-    if (stretch_) s[i] += way(J_.rows[i]);
-    else
-      for (std::size_t j = 0; j < 3; ++j) s[i] += Interval(J_.rows[i][j]) * side(j);
-  }
+  for (std::size_t i = 0; i < 3; ++i) s[i] = pad(S_[i], by) + change(J_.rows[i]);
   return s;
 }
 

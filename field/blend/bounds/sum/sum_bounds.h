@@ -1,6 +1,7 @@
 // Bounds of the sums f and S = grad_S f of a blend and of their derivatives over a small box.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,11 +17,32 @@
 
 namespace marrow {
 
-/// A straight way through a box, from its middle to either end, as rays take it; lengths as those of the box.
+/// A way through a box, from its middle to either end, as rays take it, straight or nearly so; lengths as those of the
+/// box.
 struct Stretch {
   Vec3d half;       ///< from the middle to one end; the other lies as far on the other side
   Vec3d direction;  ///< parallel to `half`: what slopes along it are for
-  double slack;     ///< by which its places may lie off, as they are rounded
+  double slack;     ///< by which its places may lie off, as the way bends and they are rounded
+  double turn = 0;  ///< by which what slopes are for may differ from `direction`
+};
+
+/// What a box becomes that is turned and stretched: its middle and, from there, the ways to the middles of three faces.
+struct SkewBox {
+  std::array<Vec3d, 3> halves;
+  double slack;  ///< by which its places may lie off
+
+  /// No place is farther from the middle.
+  double radius() const;
+};
+
+/// The places that count, about the middle of a box that holds them: all of it, or only those of one of these.
+struct Within {
+  const Stretch* stretch = nullptr;
+  const SkewBox* skew = nullptr;
+
+  Within() = default;
+  Within(const Stretch* s) : stretch(s) {}
+  Within(const SkewBox* s) : skew(s) {}
 };
 
 /// What is asked for: slopes of primitives by distance cost more than all else.
@@ -35,9 +57,9 @@ class SumBounds {
   /// Relative error of integrals under the compact kernel, over what they could be at most.
   static constexpr double compact_error = 1e-10;
 
-  explicit SumBounds(const Box3&, const Stretch* = nullptr);
-  /// Of places in the box, or only of those on a stretch through it.
-  SumBounds(const BlendField&, const Box3&, Wanted = Wanted::Slopes, const Stretch* = nullptr);
+  explicit SumBounds(const Box3&, const Within& = {});
+  /// Of places in the box, or only of those within something in it.
+  SumBounds(const BlendField&, const Box3&, Wanted = Wanted::Slopes, const Within& = {});
 
   /// A primitive that is a positive sum of |p - q|^-m with all q at least `distance` away from the middle and radii up
   /// to `radius`. Its k-th derivatives are at most m (m+1) ... (m+k-1) / distance^k times itself, and within rho of the
@@ -79,7 +101,7 @@ class SumBounds {
 
   const Box3& box() const { return box_; }
   const Vec3d& center() const { return center_; }
-  /// Half the diagonal of the box.
+  /// No place that counts is farther from the middle: half the diagonal of the box, or less.
   double rho() const { return rho_; }
   /// A skeleton is so near that f has no upper bound.
   bool unbounded() const { return unbounded_; }
@@ -92,6 +114,8 @@ class SumBounds {
   bool is_on_curve() const { return added_ == 1 && on_curve_ == 1; }
   Vec3<Interval> gradient() const;
   Vec3<Interval> S() const;
+  /// |S| at most, by the size of each primitive's, where f is bounded.
+  double longest_S() const { return most_.S * (1 + 1e-9); }
   /// d S_i / d p_j
   Interval J(std::size_t i, std::size_t j) const;
   /// The stretch, if it is all that is asked for; then slopes of f and of S_i along its direction.
@@ -102,11 +126,15 @@ class SumBounds {
   double log_slope() const { return log_slope_; }
 
  private:
+  /// What f and |S| of what is summed come to at most.
+  struct Most {
+    double f = 0, S = 0;
+  };
+  void add(const Most&);
   void keep(const Part& part) {
     if (keeps_parts_) parts_.push_back(part);
   }
-  Interval side(std::size_t i) const;
-  Interval way(const Vec3d& slope) const;
+  Interval change(const Vec3d& slope) const;
   template <class Skeleton, class Sample>
   void add_integral(const BlendField&, const Skeleton&, double distance, int m, const Sample&);
   void add_inverse(const BlendField&);
@@ -119,12 +147,14 @@ class SumBounds {
 
   Box3 box_;
   std::optional<Stretch> stretch_;
+  std::optional<SkewBox> skew_;
   Vec3d center_;
   double rho_;
   double f_ = 0, low_ = 0, error_ = 0, slope_error_ = 0, S_error_ = 0, second_ = 0, S_second_ = 0, log_slope_ = 0;
   double J_error_ = 0;
   Vec3d gradient_{}, S_{};
   Matrix3 J_{};
+  Most most_;
   PrimitiveSlopes between_{};
   bool unbounded_ = false, has_gradient_ = true, has_slopes_ = true, keeps_parts_ = false;
   std::size_t added_ = 0, on_curve_ = 0;
