@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "field/number/places_in.h"
 #include "field/tree/nodes/bend.h"
 #include "field/tree/nodes/shear.h"
 #include "field/tree/nodes/taper.h"
@@ -55,6 +56,27 @@ TEST(Warps, Laws) {
   expect_lawful_warp(bend, 44);
   expect_lawful_warp(Bend{.angle = 0}, 45);
   expect_lawful_warp(Bend{.length = 3, .angle = 360 * deg}, 46);
+}
+
+// In boxes on every side of the arc's centre and right at it, as far as they are not on the cut.
+TEST(Warps, AnglesOfBendsHoldAboutTheCentreOfTheArc) {
+  const Bend whole{.length = 2 * std::numbers::pi, .angle = 360 * deg};  // of radius 1, which nothing lies behind
+  test::Random random(47);
+  int asked = 0;
+  for (int i = 0; i < 20'000 && !testing::Test::HasFailure(); ++i) {
+    const double size = pow(10, random.between(-300, 0));
+    Box3 box;
+    for (int k = 0; k < 2; ++k) box.include(Vec3d{1 + random.between(-size, size), random.between(-size, size), 0});
+    if (box.upper.x >= 1 && box.lower.y <= 0 && box.upper.y >= 0) continue;  // the half-line behind the centre
+    ++asked;
+    const Vec3<Interval> held = whole.child_point(places_in(box));
+    for (int k = 0; k < 8; ++k) {
+      const Vec3d p{random.between(box.lower.x, box.upper.x), random.between(box.lower.y, box.upper.y), 0};
+      const double angle = std::atan2(p.y, 1 - p.x);
+      EXPECT_TRUE(held.y.lo - 1e-14 <= angle && angle <= held.y.hi + 1e-14) << "box " << i << ", size " << size;
+    }
+  }
+  EXPECT_GT(asked, 8'000);
 }
 
 TEST(Warps, Supports) {

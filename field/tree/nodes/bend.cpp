@@ -1,5 +1,6 @@
 #include "field/tree/nodes/bend.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "field/tree/nodes/cylinder_hull.h"
@@ -22,9 +23,11 @@ Box3 Bend::support(const Box3& child) const {
 
 namespace {
 
-// Of the place (u, v), to within what root, quotient and arc tangent round, an ulp each or less.
+// Of the place (u, v), to within what quotients, root and arc tangent round, half an ulp or one each. In units of its
+// larger coordinate, as squares may vanish.
 Interval angle_at(double v, double u) {
-  const double r = std::sqrt(u * u + v * v), angle = 2 * marrow::atan(u < 0 ? (r - u) / v : v / (r + u));
+  const double unit = std::max(std::fabs(u), std::fabs(v)), x = u / unit, y = v / unit;
+  const double r = std::sqrt(x * x + y * y), angle = 2 * marrow::atan(x < 0 ? (r - x) / y : y / (r + x));
   const double off = 8 * rounding::ulp * std::fabs(angle);
   return {rounding::down(angle - off), rounding::up(angle + off)};
 }
