@@ -315,6 +315,13 @@ FieldTree localized(const FieldTree& tree, const Box3& box, std::uint32_t below)
   return restriction(tree, box, below, true);
 }
 
+bool is_warped(const FieldTree& tree) {
+  return std::any_of(tree.records().begin(), tree.records().end(), [&](const FieldTree::Record& r) {
+    const TreeNode& node = tree.node(r);
+    return tree::is_warp(node) && !std::holds_alternative<AffineWarp>(node);
+  });
+}
+
 bool is_mostly_near(const FieldTree& tree) {
   return std::any_of(tree.records().begin(), tree.records().end(),
                      [](const FieldTree::Record& r) { return r.local && r.local->is_mostly_near(); });

@@ -62,6 +62,8 @@ X value(const FieldTree&, const Vec3<X>& p, std::uint32_t record = FieldTree::wh
 FieldTree restricted(const FieldTree&, const Box3&, std::uint32_t record = FieldTree::whole);
 /// The same with blends summed as local_blend.h does, to within its certified error.
 FieldTree localized(const FieldTree&, const Box3&, std::uint32_t record = FieldTree::whole);
+/// Whether anything of it lies below a warp other than a placement.
+bool is_warped(const FieldTree&);
 /// Whether sums over skeletons that are too near to be summed so take most of the time of any of its blends.
 bool is_mostly_near(const FieldTree&);
 /// Without its nodes.

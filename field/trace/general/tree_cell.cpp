@@ -11,9 +11,11 @@
 namespace marrow {
 namespace {
 
-// 2^6 cells along the longest side: finer cells cost more to make than they save. Deeper only where a tree of many
-// nodes goes on getting smaller, or a blend still has skeletons that are too near for sums over nodes.
-constexpr int max_level = 7, max_level_of_leaf = 5, max_level_near = 11, max_level_of_many = 24;
+// 2^6 cells along the longest side: finer cells cost more to make than they save. Deeper only below warps, which make
+// searches dearer, where a tree of many nodes goes on getting smaller, or a blend still has skeletons that are too near
+// for sums over nodes.
+constexpr int max_level = 6, max_level_of_warped = 7, max_level_of_leaf = 5, max_level_near = 11,
+              max_level_of_many = 24;
 constexpr std::size_t many_records = 64;
 // Cells of that level and deeper need more rays than so many of a camera in the half side (README). Where samples are
 // not known they are taken to be as many as a picture mostly has.
@@ -33,7 +35,8 @@ bool is_fine_enough(const FieldTree& tree, bool shrinks, bool one_sheet, int lev
   const std::size_t records = tree.records().size();
   if (records > many_records && shrinks && level < max_level_of_many) return false;
   if (level < max_level_near && is_mostly_near(tree)) return false;
-  return level >= (records <= 1 ? max_level_of_leaf : max_level) || (one_sheet && level >= 2);
+  const int most = records <= 1 ? max_level_of_leaf : is_warped(tree) ? max_level_of_warped : max_level;
+  return level >= most || (one_sheet && level >= 2);
 }
 
 // Whether so few rays of a camera come that dividing a cell would cost more than it saves them. Later samples come
