@@ -74,65 +74,67 @@ void expect_holds(const Box3& box, const Vec3d& q) {
   ASSERT_TRUE(box.padded(1e-12 * (1 + length(q))).contains(q)) << "outside its box";
 }
 
-TEST(Place, PartsHoldWhatWarpsMakeOfBoxes) {
-  Random random(20261128);
+// check(warps, closeness) of chains of warps.
+template <class Check>
+Closeness for_random_warps(Random& random, const Check& check) {
   Closeness closeness;
   for (int round = 0; round < 4000 && !testing::Test::HasFailure(); ++round) {
     SCOPED_TRACE("round " + std::to_string(round));
-    const std::vector<TreeNode> warps = random_warps(random);
+    check(random_warps(random), closeness);
+  }
+  std::cout << "  " << closeness.parts << " of " << closeness.asked << " closer, " << closeness.of_box / closeness.parts
+            << " of the radius of the box\n";
+  return closeness;
+}
+
+TEST(Place, PartsHoldWhatWarpsMakeOfBoxes) {
+  Random random(20261128);
+  const Closeness closeness = for_random_warps(random, [&](const std::vector<TreeNode>& warps, Closeness& told) {
     const Vec3d center = random.vector(1.5), half = abs(random.vector(pow(10, random.between(-4, -0.5))));
-    const Box3 cell{center - half, center + half};
-    const auto there = moved(warps, jet_variables(places_in(cell)));
-    if (!there) continue;
-    ++closeness.asked;
+    const auto there = moved(warps, jet_variables(places_in(Box3{center - half, center + half})));
+    if (!there) return;
+    ++told.asked;
     const auto part = there->part();
-    if (part) closeness.add(part->shape.radius(), there->box());
-    for (int k = 0; k < 8 && !testing::Test::HasFailure(); ++k) {
-      const Vec3d share = random.vector(1),
-                  q = place_of(warps, center + Vec3d{share.x * half.x, share.y * half.y, share.z * half.z});
+    if (part) told.add(part->shape.radius(), there->box());
+    for (int k = 0; k < 8; ++k) {
+      const Vec3d share = random.vector(1);
+      const Vec3d q = place_of(warps, center + Vec3d{share.x * half.x, share.y * half.y, share.z * half.z});
       expect_holds(there->box(), q);
       if (!part) continue;
       expect_holds(part->box, q);
       Vec3d off = q - part->box.center();
       for (std::size_t i = 0; i < 3; ++i) off -= part->shape.halves[i] * share[i];
-      ASSERT_LE(length(off), part->shape.slack * (1 + 1e-12));
+      EXPECT_LE(length(off), part->shape.slack * (1 + 1e-12));
     }
-  }
-  std::cout << "  " << closeness.parts << " of " << closeness.asked << " closer, " << closeness.of_box / closeness.parts
-            << " of the radius of the box\n";
+  });
   EXPECT_GT(closeness.parts, 0.5 * closeness.asked);
   EXPECT_LT(closeness.of_box / closeness.parts, 0.95);
 }
 
 TEST(Place, PartsHoldWhatWarpsMakeOfPiecesOfRays) {
   Random random(20261129);
-  Closeness closeness;
-  for (int round = 0; round < 4000 && !testing::Test::HasFailure(); ++round) {
-    SCOPED_TRACE("round " + std::to_string(round));
-    const std::vector<TreeNode> warps = random_warps(random);
+  const Closeness closeness = for_random_warps(random, [&](const std::vector<TreeNode>& warps, Closeness& told) {
     const Vec3d origin = random.vector(1.5), direction = random.vector(1);
     const double end = pow(10, random.between(-5, 0));
     const RayBounds t = RayBounds::variable({0, end}, 0);
     const auto there = moved(warps, constant<RayBounds>(origin) + constant<RayBounds>(direction) * t);
-    if (!there) continue;
-    ++closeness.asked;
+    if (!there) return;
+    ++told.asked;
     const auto part = there->part();
-    if (part) closeness.add(length(part->shape.half) + part->shape.slack, there->box());
-    for (int k = 0; k < 8 && !testing::Test::HasFailure(); ++k) {
+    if (part) told.add(length(part->shape.half) + part->shape.slack, there->box());
+    const auto at = [&](double share) { return place_of(warps, origin + direction * (0.5 * (1 + share) * end)); };
+    for (int k = 0; k < 8; ++k) {
       const double share = random.between(-1, 1), step = 1e-3;
-      const auto at = [&](double s) { return place_of(warps, origin + direction * (0.5 * (1 + s) * end)); };
       const Vec3d q = at(share);
       expect_holds(there->box(), q);
       if (!part) continue;
       const Stretch& way = part->shape;
       expect_holds(part->box, q);
-      ASSERT_LE(length(q - part->box.center() - way.half * share), way.slack * (1 + 1e-12));
+      EXPECT_LE(length(q - part->box.center() - way.half * share), way.slack * (1 + 1e-12));
       const Vec3d slope = (at(share + step) - at(share - step)) / (step * end);
-      ASSERT_LE(length(slope - way.direction), way.turn * (1 + 1e-2) + 1e-9 * (1 + 1 / end));
+      EXPECT_LE(length(slope - way.direction), way.turn * (1 + 1e-2) + 1e-9 * (1 + 1 / end));
     }
-  }
-  std::cout << "  " << closeness.parts << " of " << closeness.asked << " closer, " << closeness.of_box / closeness.parts
-            << " of the radius of the box\n";
+  });
   EXPECT_GT(closeness.parts, 0.8 * closeness.asked);
 }
 

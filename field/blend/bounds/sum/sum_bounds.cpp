@@ -29,11 +29,11 @@ SumBounds::SumBounds(const Box3& box, const Within& within)
     : box_(box), center_(box.center()), rho_(0.5 * length(box.size()) * (1 + 1e-15)) {
   if (within.stretch != nullptr) {
     stretch_ = *within.stretch;
-    rho_ = length(stretch_->half) * (1 + 1e-15) + stretch_->slack;
+    skew_ = SkewBox{{stretch_->half, {}, {}}, stretch_->slack};
   } else if (within.skew != nullptr) {
     skew_ = *within.skew;
-    rho_ = skew_->radius();
   }
+  if (skew_) rho_ = skew_->radius();
 }
 
 SumBounds::SumBounds(const BlendField& blend, const Box3& box, Wanted wanted, const Within& within)
@@ -116,7 +116,8 @@ void SumBounds::add(const SourceSums& sources) {
     return;
   }
   const double shrink = (1 + 1e-12) / (1 - q), grown = integer_power(shrink, m + 2);
-  // The sum of w tau D^-(m+1) is at most the mean of those of w tau D^-m and w tau D^-(m+2) [Cauchy, Schwarz].
+  // The sum of w tau D^-(m+1) is at most the geometric mean of those of w tau D^-m and w tau D^-(m+2)
+  // [Cauchy, Schwarz].
   const double most = integer_power(shrink, m);
   add(Most{most * f, most * shrink * m * std::sqrt(f * sources.largest_radius() * s.pull)});
   f_ += f;
@@ -183,13 +184,10 @@ void SumBounds::add(const Between& b) {
 
 // How much something of this slope changes from the middle on.
 Interval SumBounds::change(const Vec3d& slope) const {
-  const double rounded = 1e-15 * rho_;
-  const auto either_way = [](double by) { return Interval(rounding::down(-by), rounding::up(by)); };
-  if (stretch_) return either_way(std::fabs(dot(slope, stretch_->half)) + length(slope) * (stretch_->slack + rounded));
   if (skew_) {
-    double by = length(slope) * (skew_->slack + 3 * rounded);
+    double by = length(slope) * (skew_->slack + 3e-15 * rho_);
     for (const Vec3d& half : skew_->halves) by += std::fabs(dot(slope, half));
-    return either_way(by);
+    return {rounding::down(-by), rounding::up(by)};
   }
   Interval all;
   for (std::size_t i = 0; i < 3; ++i)

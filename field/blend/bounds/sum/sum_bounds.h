@@ -147,7 +147,7 @@ class SumBounds {
 
   Box3 box_;
   std::optional<Stretch> stretch_;
-  std::optional<SkewBox> skew_;
+  std::optional<SkewBox> skew_;  ///< of a stretch, too
   Vec3d center_;
   double rho_;
   double f_ = 0, low_ = 0, error_ = 0, slope_error_ = 0, S_error_ = 0, second_ = 0, S_second_ = 0, log_slope_ = 0;
