@@ -87,5 +87,22 @@ TEST(Pieces, NearerThanInsideDistanceIsInside) {
   EXPECT_LT(least, 1.3 * critical_field) << "the distance could be larger";
 }
 
+TEST(Pieces, OfAnyLengthHaveAnInsideOrNone) {
+  for (const int n : {3, 8, 20})
+    for (double length = 1e-25; length < 1e8; length *= 10) {
+      BlendField blend;
+      blend.degree = n;
+      blend.segments.skeletons.push_back({{0, 0, 0}, {length, 0, 0}, 1, 1});
+      // Long ones are of many pieces, all alike.
+      if (length > 1e5) blend.segments.skeletons[0] = {{0, 0, 0}, {length, 0, 0}, length, length};
+      const Piece piece = PieceCutter(n, critical_field).cut(blend).front();
+      EXPECT_GE(piece.inside_distance, 0);
+      EXPECT_LT(piece.inside_distance, piece.radius);
+      if (piece.inside_distance < 1e-12 * piece.radius) continue;
+      const Vec3d p{-piece.inside_distance, 0, 0};
+      EXPECT_GT(field_of(piece, p, n).value, critical_field) << "length " << length << ", degree " << n;
+    }
+}
+
 }  // namespace
 }  // namespace marrow::test
