@@ -74,6 +74,7 @@ TEST(Warps, AnglesOfBendsHoldAboutTheCentreOfTheArc) {
       const Vec3d p{random.between(box.lower.x, box.upper.x), random.between(box.lower.y, box.upper.y), 0};
       const double angle = std::atan2(p.y, 1 - p.x);
       EXPECT_TRUE(held.y.lo - 1e-14 <= angle && angle <= held.y.hi + 1e-14) << "box " << i << ", size " << size;
+      EXPECT_NEAR(whole.child_point(p).y, angle, 1e-14) << "box " << i << ", size " << size;
     }
   }
   EXPECT_GT(asked, 8'000);

@@ -121,6 +121,9 @@ struct Bend {
       return angle_over(y, x);
     } else {
       if (value_of(y) == 0 && value_of(x) == 0) return X(std::numbers::pi);
+      constexpr double least = 1e-150, up = 1e150;  // squares of less may vanish
+      const auto is_small = [](const auto& v) { return v < least && v > -least; };
+      if (is_small(value_of(y)) && is_small(value_of(x))) return angle_of(y * X(up), x * X(up));
       const X r = sqrt(square(x) + square(y));
       if (!(value_of(x) < 0)) return X(2.0) * atan(y / (r + x));
       const double far_side = value_of(y) < 0 ? -std::numbers::pi : std::numbers::pi;
