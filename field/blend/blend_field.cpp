@@ -26,10 +26,6 @@ void include_circle(const ArcSkeleton& s, Box3& box) {
   box.include(s.center + reach);
 }
 
-Correction correction_with(const BlendField& blend, double alpha) {
-  return Correction({blend.kernel, blend.degree, blend.kernel_shape}, alpha, blend.cavity, blend.projection);
-}
-
 }  // namespace
 
 template <Derivatives Order>
@@ -43,7 +39,7 @@ template SkeletonSample sum_of_primitives<Derivatives::ScaleInvariant>(const Ble
 template SkeletonSample sum_of_primitives<Derivatives::First>(const BlendField&, const Vec3d&);
 template SkeletonSample sum_of_primitives<Derivatives::Second>(const BlendField&, const Vec3d&);
 
-Correction correction_of(const BlendField& blend) { return correction_with(blend, blend.alpha); }
+Correction correction_of(const BlendField& blend) { return correction_at(blend, blend.alpha); }
 
 AlphaSample alpha_at(const BlendField& blend, const Vec3d& p) {
   if (!blend.alpha_varies()) return {.value = blend.alpha};
@@ -54,7 +50,7 @@ AlphaSample alpha_at(const BlendField& blend, const Vec3d& p) {
 BlendSample evaluate(const BlendField& blend, const Vec3d& p) {
   const auto [sum, alpha] = gather<Derivatives::Second>(blend, p);
   const double G = length(sum.si_gradient);
-  const Correction::Partials c = correction_with(blend, alpha.value).partials(sum.value, G);
+  const Correction::Partials c = correction_at(blend, alpha.value).partials(sum.value, G);
   BlendSample s{.sum = sum.value,
                 .sum_gradient = sum.gradient,
                 .si_gradient = sum.si_gradient,
@@ -69,7 +65,7 @@ BlendSample evaluate(const BlendField& blend, const Vec3d& p) {
 
 double corrected_value(const BlendField& blend, const Vec3d& p) {
   const auto [sum, alpha] = gather<Derivatives::ScaleInvariant>(blend, p);
-  return correction_with(blend, alpha.value).value(sum.value, length(sum.si_gradient));
+  return correction_at(blend, alpha.value).value(sum.value, length(sum.si_gradient));
 }
 
 namespace {

@@ -93,6 +93,13 @@ struct BlendField {
   }
 };
 
+inline Kernel kernel_of(const BlendField& blend) { return {blend.kernel, blend.degree, blend.kernel_shape}; }
+
+/// The blend's operator at one angle, radians.
+inline Correction correction_at(const BlendField& blend, double alpha) {
+  return Correction(kernel_of(blend), alpha, blend.cavity, blend.projection);
+}
+
 /// Inside where corrected > 1. On a skeleton the values are infinite and the gradients 0.
 struct BlendSample {
   double sum = 0;              ///< f = sum f_i

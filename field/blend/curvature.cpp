@@ -24,7 +24,7 @@ Matrix3 sum_hessian(const BlendField& blend, const Vec3d& p) {
 
 HessianJet second_order_corrected(const BlendField& blend, const Vec3d& p) {
   const auto [sum, alpha] = second_order_gather(blend, p);
-  const CorrectionRule rule{{blend.kernel, blend.degree, blend.kernel_shape}, blend.cavity, blend.projection};
+  const CorrectionRule rule{kernel_of(blend), blend.cavity, blend.projection};
   return second_order_correction(rule, sum.field, square(sum.si.x) + square(sum.si.y) + square(sum.si.z), alpha);
 }
 

@@ -14,8 +14,6 @@ namespace {
 
 bool is_usable(const SkeletonSample& sum) { return sum.value > 0 && sum.value <= field_ceiling; }
 
-Kernel kernel_of(const BlendField& blend) { return {blend.kernel, blend.degree, blend.kernel_shape}; }
-
 template <class Skeleton>
 Shares shares_of(const BlendField& blend, const SkeletonSample& s, const PrimitiveList<Skeleton>& list, std::size_t i,
                  const Vec3d& p) {

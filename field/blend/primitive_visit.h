@@ -52,7 +52,7 @@ void for_each_primitive(const BlendField& blend, const Vec3d& p, const Visit& vi
   const auto all = [&](const auto& list, const auto& field) {
     for (std::size_t i = 0; i < list.size(); ++i) visit(field(list.skeletons[i]), list, i);
   };
-  const Kernel kernel{blend.kernel, n, blend.kernel_shape};
+  const Kernel kernel = kernel_of(blend);
   if (blend.kernel == KernelFamily::Inverse) {
     all(blend.points, [&](const PointSkeleton& s) { return point_field<Order>(s, p, n); });
     all(blend.segments, [&](const SegmentSkeleton& s) { return segment_field<Order>(s, p, n); });

@@ -16,8 +16,6 @@ using X = HessianJet;
 
 bool is_usable(const X& field) { return field.value > 0 && field.value <= field_ceiling; }
 
-Kernel kernel_of(const BlendField& blend) { return {blend.kernel, blend.degree, blend.kernel_shape}; }
-
 // Calls visit(sample, list, i) for each primitive; of a strand of distance segments the nearest counts.
 template <class Visit>
 void for_each_second_order(const BlendField& blend, const Vec3d& p, const Visit& visit) {

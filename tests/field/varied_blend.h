@@ -64,7 +64,7 @@ inline void give_angles(BlendField& blend, Random& random, int rule) {
     fill_all(blend, fill);
     for (std::uint32_t i = 0; i < strand; ++i) blend.direction_bounds.push_back({random.between(0, 0.5), 1.3});
   } else if (rule == 3) {
-    const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+    const Kernel kernel = kernel_of(blend);
     const bool density = blend.kernel == KernelFamily::Inverse;
     static const LocalContact table_of_four({KernelFamily::Inverse, 4, 1}, true, Projection::Paper, true, true);
     if (density) blend.degree = 4;

@@ -10,10 +10,6 @@ namespace {
 constexpr double inf = Box3::inf;
 const Vec3<Interval> unknown{Interval::everything(), Interval::everything(), Interval::everything()};
 
-Correction correction_at(const BlendField& blend, double alpha) {
-  return Correction({blend.kernel, blend.degree, blend.kernel_shape}, alpha, blend.cavity, blend.projection);
-}
-
 // C is monotone in alpha at each f and G, so that the two ends bound it between them [tracing 3.3]; but not with
 // cavity under the compact kernel.
 Interval corrected(const BlendField& blend, const Correction& least, const Interval& alpha, const Interval& f,

@@ -19,7 +19,7 @@ struct Tail {
 
 std::vector<Tail> tails(const BlendField& blend) {
   const int n = blend.degree;
-  const Kernel kernel{blend.kernel, n, blend.kernel_shape};
+  const Kernel kernel = kernel_of(blend);
   const auto scale = [&](int dimension) {
     if (blend.kernel == KernelFamily::Inverse)
       return dimension == 0 ? 1.0 : dimension == 1 ? 1 / curve_normalisation(n) : 1 / surface_normalisation(n);
@@ -54,7 +54,7 @@ Box3 blend_extent(const BlendField& blend, double level) {
   if (!(level > 0)) return {{-Box3::inf, -Box3::inf, -Box3::inf}, {Box3::inf, Box3::inf, Box3::inf}};
   const std::vector<Tail> all = tails(blend);
   // Whatever alpha is: from 0 on C lies between f and the curve at G, below 0 it is twice that at most.
-  const Correction along_f({blend.kernel, blend.degree, blend.kernel_shape}, 0, blend.cavity, blend.projection);
+  const Correction along_f = correction_at(blend, 0);
   const auto highest = [&](double d) {
     double f = 0, G = 0;
     for (const Tail& t : all) {

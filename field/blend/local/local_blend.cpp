@@ -77,9 +77,8 @@ std::shared_ptr<const LocalBlend> LocalBlend::make(const BlendField& blend, std:
   const BlendField& from = outer ? outer->rest_ : blend;
   std::shared_ptr<LocalBlend> made(new LocalBlend(blend, outer));
   BlendField& rest = made->rest_;
-  DistancesInReach distances =
-      distances_in_reach(from.distance_segments, {blend.kernel, blend.degree, blend.kernel_shape},
-                         {.center = box.center(), .radius = 0.5 * length(box.size())});
+  DistancesInReach distances = distances_in_reach(from.distance_segments, kernel_of(blend),
+                                                  {.center = box.center(), .radius = 0.5 * length(box.size())});
   rest.distance_segments = std::move(distances.segments);
   if (blend.kernel == KernelFamily::Compact) {
     keep_reaching(from.points, blend.kernel_shape, box, rest.points);

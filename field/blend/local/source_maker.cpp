@@ -60,7 +60,7 @@ SourceMaker::SourceMaker(const BlendField& blend, const Box3& box, double error,
       rho_(0.5 * length(box.size())),
       error_(error),
       share_(share) {
-  const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+  const Kernel kernel = kernel_of(blend);
   const bool is_cauchy = blend.kernel == KernelFamily::Cauchy;
   if (is_cauchy) per_lift_ = 1 / blend.kernel_shape;
   for (int dimension = 0; dimension < 3; ++dimension) {

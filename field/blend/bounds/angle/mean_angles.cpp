@@ -152,7 +152,7 @@ SkeletonDirection direction_of(const BlendField& blend, const PrimitiveList<Skel
     if (is_by_distance(blend, list))
       return {.mean = nearest_direction(skeleton, p, {.value = 1}).value, .turn = part.place_speed};
     if (!(f > 0)) return {.range = 2};
-    return {.mean = arc_direction(skeleton, p, {blend.kernel, blend.degree, blend.kernel_shape}).value / f, .range = 2};
+    return {.mean = arc_direction(skeleton, p, kernel_of(blend)).value / f, .range = 2};
   } else {
     return {};
   }

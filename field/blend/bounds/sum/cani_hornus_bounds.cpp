@@ -107,8 +107,7 @@ void SumBounds::add_cani_hornus(const BlendField& blend) {
     if (!(distance > rho_) || !ball.is_finite()) {
       const double least = std::min(s.radius_from, s.radius_to);
       const SegmentSkeleton even{s.from, s.to, least, least};
-      const Interval f{least_field(even, Profile({blend.kernel, blend.degree, blend.kernel_shape}, 1), center_, rho_),
-                       inf};
+      const Interval f{least_field(even, Profile(kernel_of(blend), 1), center_, rho_), inf};
       add({.f = f, .S_by = inf, .log_slope = inf});
       keep({.f = f});
       continue;

@@ -188,7 +188,7 @@ Changes changes_at_most(const PointSkeleton& s, const Asked& asked) { return cha
 }  // namespace
 
 void SumBounds::add_compact(const BlendField& blend) {
-  const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+  const Kernel kernel = kernel_of(blend);
   const auto all = [&](const auto& skeletons, int dimension, const auto& field) {
     const Profile profile(kernel, dimension);
     for (const auto& s : skeletons) {

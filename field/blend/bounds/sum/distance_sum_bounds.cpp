@@ -224,7 +224,7 @@ void SumBounds::keep_strand(std::size_t size, std::span<const SeenSegment> seen,
 }
 
 void SumBounds::add_strands(const BlendField& blend) {
-  const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+  const Kernel kernel = kernel_of(blend);
   NearestSegments nearest(kernel, {.center = center_, .radius = rho_});
   std::vector<Part> parts;
   for_each_strand(blend.distance_segments, [&](std::size_t, std::span<const SegmentSkeleton> strand) {
@@ -248,7 +248,7 @@ void SumBounds::add_strands(const BlendField& blend) {
 }
 
 void SumBounds::add_distances(const BlendField& blend) {
-  const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+  const Kernel kernel = kernel_of(blend);
   add_strands(blend);
   const auto add_one = [&](const auto& s) {
     const Middle middle = middle_of(s, *this, kernel);

@@ -247,7 +247,7 @@ void SumBounds::add_integral(const BlendField& blend, const Skeleton& s, double 
   ++added_;
   unbounded_ = true;
   log_slope_ = inf;
-  const Profile profile({blend.kernel, blend.degree, blend.kernel_shape}, dimension_of(s));
+  const Profile profile(kernel_of(blend), dimension_of(s));
   low_ += least_field(s, profile, center_, rho_);
 }
 
@@ -268,7 +268,7 @@ void SumBounds::add_inverse(const BlendField& blend) {
 
 // (1 + s^2 d^2 / tau^2)^(-m/2) is an inverse power of the distance in four dimensions, tau / s being the fourth.
 void SumBounds::add_cauchy(const BlendField& blend) {
-  const Kernel kernel{blend.kernel, blend.degree, blend.kernel_shape};
+  const Kernel kernel = kernel_of(blend);
   const Vec3d& p = center_;
   const auto lifted = [&](const auto& s) {
     const double d = distance_to(s, p), w = least_radius(s) / blend.kernel_shape;
