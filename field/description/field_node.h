@@ -158,6 +158,12 @@ struct Blend {
   SkeletonModel model = SkeletonModel::Integral;
   std::vector<FieldNodeId> of;
 };
+/// What a primitive by itself stands for: a blend of one, with the defaults.
+inline Blend blend_of_one(FieldNodeId primitive) {
+  Blend blend;
+  blend.of = {primitive};
+  return blend;
+}
 /// Crisp union: the largest child value. Children need not be blends.
 struct Union {
   std::vector<FieldNodeId> of;

@@ -15,7 +15,6 @@ double expm1(double x) { return Sleef_cinz_expm1d1_u10purec(x); }
 double log(double x) { return Sleef_cinz_logd1_u10purec(x); }
 double log1p(double x) { return Sleef_cinz_log1pd1_u10purec(x); }
 double cbrt(double x) { return Sleef_cinz_cbrtd1_u10purec(x); }
-double sinh(double x) { return Sleef_cinz_sinhd1_u10purec(x); }
 double cosh(double x) { return Sleef_cinz_coshd1_u10purec(x); }
 double asinh(double x) { return Sleef_cinz_asinhd1_u10purec(x); }
 double acosh(double x) { return Sleef_cinz_acoshd1_u10purec(x); }

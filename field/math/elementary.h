@@ -1,6 +1,6 @@
 // Elementary functions with the same bits on every machine.
-// glibc picks code by processor and so differs in last bits between them; pictures must not
-//. sqrt is exact by IEEE 754 and comes from <cmath>.
+// glibc picks code by processor and so differs in last bits between them; pictures must not. sqrt is exact by IEEE 754
+// and comes from <cmath>.
 #pragma once
 
 #include <bit>
@@ -26,7 +26,6 @@ double log(double);
 double log1p(double);
 double pow(double base, double exponent);
 double cbrt(double);
-double sinh(double);
 double cosh(double);
 double asinh(double);
 double acosh(double);

@@ -1,6 +1,8 @@
 // A half line with a parameter interval.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "field/math/vec3.h"
@@ -20,6 +22,8 @@ struct Ray {
   const FieldAround* around = nullptr;
 
   Vec3d at(double t) const { return origin + direction * t; }
+  /// What at(t) rounds goes by: the way, or the largest coordinate of the origin.
+  double size_at(double t) const { return std::max(std::fabs(t), max_component(abs(origin))); }
 };
 
 }  // namespace marrow

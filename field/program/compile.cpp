@@ -36,13 +36,6 @@ struct Placement {
   Affine from_node;  // to the world, or to the blend
 };
 
-// A primitive alone is a blend of one with the defaults.
-Blend blend_of(FieldNodeId primitive) {
-  Blend blend;
-  blend.of = {primitive};
-  return blend;
-}
-
 class Compiler {
  public:
   explicit Compiler(const FieldDescription& description)
@@ -108,7 +101,7 @@ class Compiler {
     const FieldNode& node = description_[here.node];
     if (const auto* blend = std::get_if<Blend>(&node.what)) parts_.push_back(part_of(*blend, here));
     else if (const auto* p = std::get_if<Primitive>(&node.what))
-      parts_.push_back(part_of(blend_of(here.node), here, p->model));
+      parts_.push_back(part_of(blend_of_one(here.node), here, p->model));
     else if (const auto sum = sum_of_points(description_, here.node)) parts_.push_back(part_of(*sum, here));
     else return false;
     return true;

@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "field/number/places_in.h"
 #include "field/number/variables_at.h"
 #include "field/program/field_program.h"
 #include "field/tree/blend_values.h"
@@ -68,19 +67,6 @@ FieldTree tree_of(const PlacedBlend& part) {
   nodes->push_back(AffineWarp{part.world_from_local, part.local_from_world});
   records.push_back({.node = 2, .first_child = 0, .child_count = 1, .material = {}, .support = {}});
   return FieldTree(std::move(nodes), std::move(records), {0});
-}
-
-Interval value_bounds(const FieldProgram& program, const Box3& box) {
-  const Vec3<Interval> p = places_in(box);
-  Interval bounds(0);
-  bool is_first = true;
-  const auto add = [&](const Interval& part) {
-    bounds = is_first ? part : max(bounds, part);
-    is_first = false;
-  };
-  for (const PlacedBlend& part : program.parts()) add(value(tree_of(part), p));
-  for (const FieldTree& tree : program.trees()) add(value(tree, p));
-  return bounds;
 }
 
 FieldSample evaluate(const FieldProgram& program, const Vec3d& p) {

@@ -75,9 +75,6 @@ bool is_single_blend(const FieldProgram&);
 /// si_gradient and si_norm stay those of the blend's own coordinates, in which the correction is defined.
 BlendSample evaluate_part(const PlacedBlend&, const Vec3d& p);
 
-/// Contains the value at every point of the box.
-Interval value_bounds(const FieldProgram&, const Box3&);
-
 /// A blend as a tree of its own, in world coordinates.
 FieldTree tree_of(const PlacedBlend&);
 

@@ -23,16 +23,14 @@ class RampedField : public AlphaSource {
 
   AlphaSample at(const Vec3d& p) const override {
     const FieldSample s = evaluate(program_, p);
-    const double share = (s.value - ramp_.from[0]) / (ramp_.from[1] - ramp_.from[0]);
-    const double slope = share > 0 && share < 1 ? slope_of_ramp() : 0;
+    const double slope = is_level_at(s.value) ? 0 : slope_of_ramp();
     return {.value = ramp_(s.value), .gradient = slope == 0 ? Vec3d{} : s.gradient * slope};
   }
 
   HessianJet second_order_at(const Vec3d& p) const override {
     const HessianJet v = second_order_value(program_, variables_at<HessianJet>(p));
-    const double share = (v.value - ramp_.from[0]) / (ramp_.from[1] - ramp_.from[0]);
-    if (!(share > 0 && share < 1)) return ramp_(v.value);
-    return ramp_.to[0] + (v - ramp_.from[0]) * ((ramp_.to[1] - ramp_.to[0]) / (ramp_.from[1] - ramp_.from[0]));
+    if (is_level_at(v.value)) return ramp_(v.value);
+    return ramp_.to[0] + (v - ramp_.from[0]) * slope_of_ramp();
   }
 
   // A ramp is monotone.
@@ -45,7 +43,7 @@ class RampedField : public AlphaSource {
   Vec3<Interval> slopes(const Box3& box) const override {
     using X = Jet<Interval, 3>;
     const X v = enclosed<X>(variables_at<X>(places_in(box)));
-    const double least = std::min(ramp_.from[0], ramp_.from[1]), most = std::max(ramp_.from[0], ramp_.from[1]);
+    const auto [least, most] = ramp_.from;
     if (v.value.hi < least || v.value.lo > most) return {Interval(0), Interval(0), Interval(0)};
     const bool level_too = v.value.lo <= least || v.value.hi >= most;
     const Interval slope = level_too ? hull(Interval(0), slope_of_ramp()) : Interval(slope_of_ramp());
@@ -53,6 +51,7 @@ class RampedField : public AlphaSource {
   }
 
  private:
+  bool is_level_at(double value) const { return !(value > ramp_.from[0] && value < ramp_.from[1]); }
   double slope_of_ramp() const { return (ramp_.to[1] - ramp_.to[0]) / (ramp_.from[1] - ramp_.from[0]); }
   template <Number X>
   X enclosed(const Vec3<X>& p) const {

@@ -20,13 +20,6 @@ std::span<const FieldNodeId> children_of(const FieldNode& node) {
                     node.what);
 }
 
-// A primitive alone is a blend of one with the defaults.
-Blend blend_of(FieldNodeId primitive) {
-  Blend blend;
-  blend.of = {primitive};
-  return blend;
-}
-
 TreeNode point_leaf(const PointSkeleton& p) { return PointLeaf{p.at, p.radius}; }
 
 }  // namespace
@@ -152,7 +145,8 @@ std::uint32_t TreeBuilder::record_of(FieldNodeId id) {
   if (place.record == none) {  // of a primitive, which was put off
     const auto& primitive = std::get<Primitive>(description_[id].what);
     const PointSkeleton* point = lone_point(description_[id]);
-    place.record = append(point != nullptr ? point_leaf(*point) : leaf_of_(blend_of(id), id), {}, primitive.material);
+    place.record =
+        append(point != nullptr ? point_leaf(*point) : leaf_of_(blend_of_one(id), id), {}, primitive.material);
   }
   if (place.map != 0) place = {placed(place.record, maps_[place.map]), 0};
   return place.record;

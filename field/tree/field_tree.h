@@ -31,10 +31,12 @@ class FieldTree {
     std::shared_ptr<const LocalBlend> local = nullptr;  ///< of a blend in a part of space; null: the blend as it is
   };
 
-  /// `nodes` may be shared between trees. Preconditions: children of a record stand before it; the last is the root.
+  /// `nodes` may be shared between trees. Preconditions: a crisp union is the first of them, which without children is
+  /// 0 everywhere; children of a record stand before it; the last is the root.
   FieldTree(std::shared_ptr<const std::vector<TreeNode>> nodes, std::vector<Record> records,
             std::vector<std::uint32_t> children);
   FieldTree() = default;  ///< 0 everywhere
+  static constexpr std::uint32_t index_of_union = 0;
 
   const TreeNode& node(const Record& r) const;
   std::span<const Record> records() const { return records_; }
@@ -72,12 +74,12 @@ std::size_t bytes_of(const FieldTree&);
 /// Outside this box the field is below 1. Infinite where no bound is found.
 Box3 surface_bounds(const FieldTree&);
 /// The same for each child of the root, where that is a crisp union of several; else for the root alone.
-struct Member {
+struct UnionMember {
   std::uint32_t record;
   Box3 bounds;
   bool is_leaf;  ///< a primitive or a blend, at most placed
 };
-std::vector<Member> members(const FieldTree&);
+std::vector<UnionMember> members(const FieldTree&);
 
 /// Primitives in the tree, those of blends among them; a shared node counts once.
 std::size_t leaf_count(const FieldTree&);

@@ -87,8 +87,9 @@ class SetExpression {
     std::vector<NodeIndex> children;  ///< those that are sooner asked first
     double cost = 0;                  ///< to ask for its side, by its primitives
   };
-  /// That a node beside the way from an operand to the root leaves the decision to it; or, where no side is wanted, the
-  /// lender around a blend.
+  /// What must hold of a node beside the way from an operand to the root, so that the operand decides: that it is on
+  /// the wanted side (an operand of a union counts where the others are outside). Where no side is wanted: that the
+  /// blend, which is lent, decides in the node, which lends it.
   struct Condition {
     NodeIndex node;
     Side wanted;

@@ -21,9 +21,9 @@ bool is_worth_a_tracer(const BlendField& blend) {
 
 TreeParts take_apart(const FieldTree& tree) {
   TreeParts parts;
-  const std::vector<Member> all = members(tree);
+  const std::vector<UnionMember> all = members(tree);
   std::vector<std::uint32_t> records, rest;
-  for (const Member& member : all) records.push_back(member.record);
+  for (const UnionMember& member : all) records.push_back(member.record);
   auto expressions = SetExpression::of(tree, records, is_worth_a_tracer);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto& [record, bounds, is_leaf] = all[i];

@@ -7,6 +7,9 @@
 
 #include <boost/math/tools/toms748_solve.hpp>
 
+#include "field/math/side.h"
+#include "field/number/places_in.h"
+
 namespace marrow {
 namespace {
 
@@ -19,8 +22,6 @@ constexpr std::uint32_t first_evaluations = 2000, more_evaluations = 500;
 // Sums are not known any better: a piece that stays so near to 1, on one side at its ends, cannot be decided.
 constexpr double sums_are_off = 1e-10;
 constexpr double inf = std::numeric_limits<double>::infinity();
-
-enum class Side { Unknown, Outside, Inside };
 
 class Search {
  public:
@@ -61,23 +62,11 @@ class Search {
 
   OnRay enclosure(const Interval& t) {
     ++found_.evaluations;
-    const OnRay along = OnRay::variable(t, 0);
-    const Vec3d& o = ray_.origin;
-    const Vec3d& d = ray_.direction;
-    return value(
-        tree_,
-        Vec3<OnRay>{OnRay(o.x) + along * OnRay(d.x), OnRay(o.y) + along * OnRay(d.y), OnRay(o.z) + along * OnRay(d.z)},
-        record_);
+    return value(tree_, places_on(ray_, OnRay::variable(t, 0)), record_);
   }
   Interval enclosure_at(double t) {
     ++found_.evaluations;
-    const Interval s(t);
-    const Vec3d& o = ray_.origin;
-    const Vec3d& d = ray_.direction;
-    return value(tree_,
-                 Vec3<Interval>{Interval(o.x) + s * Interval(d.x), Interval(o.y) + s * Interval(d.y),
-                                Interval(o.z) + s * Interval(d.z)},
-                 record_);
+    return value(tree_, places_on(ray_, Interval(t)), record_);
   }
 
   // Settles the piece, or puts back what remains of it.
@@ -150,12 +139,10 @@ class Search {
     return !piece.crosses();
   }
 
-  // Of t, or of the coordinates that the ray runs through.
-  double size(double t) const { return std::max(std::fabs(t), max_component(abs(ray_.origin))); }
   // Sums of a blend are known to 3e-11 of themselves: pieces shorter than 2^-34 (6e-11) of the body, or of coordinates
   // there, say nothing new. It is far below the ulp of a float. Where the body, or the ray's origin, is far away,
   // places are rounded by more.
-  double gap(double t) const { return std::max(0x1p-34 * nearby_, 0x1p-48 * size(t)); }
+  double gap(double t) const { return std::max(0x1p-34 * nearby_, 0x1p-48 * ray_.size_at(t)); }
   static double length(const Piece& piece) { return piece.end - piece.begin; }
   bool is_short(const Piece& piece) const { return length(piece) <= gap(piece.end); }
 
@@ -172,7 +159,7 @@ class Search {
       const double off = std::clamp(std::fabs(at(t) - 1), least, most);
       return known == Side::Inside ? off : -off;
     };
-    const auto near_enough = [&](double a, double b) { return b - a <= 16 * rounding::ulp * size(b); };
+    const auto near_enough = [&](double a, double b) { return b - a <= 16 * rounding::ulp * ray_.size_at(b); };
     if (near_enough(piece.begin, piece.end)) return piece.end;
     std::uintmax_t most_steps = 100;
     return boost::math::tools::toms748_solve(above, piece.begin, piece.end, on_side(piece.begin, piece.at_begin),

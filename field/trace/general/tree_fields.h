@@ -11,7 +11,7 @@ template <Number X>
 X TreeTracer::largest_of_others(std::uint32_t member, const Vec3<X>& p) const {
   X largest(0.0);
   const Vec3d at{lower(p.x), lower(p.y), lower(p.z)};
-  for (const Member& other : members_)
+  for (const UnionMember& other : members_)
     if (other.record != member && other.bounds.contains(at)) largest = max(largest, value(tree_, p, other.record));
   return largest;
 }

@@ -11,8 +11,8 @@ namespace {
 // another tracer has it, that of a blend that is lent.
 constexpr double error_of_local_sums = 2e-7, rounding_of_sums = 1e-12, error_beside_lent = 2e-5;
 constexpr double longest_step = 1e-3;  // of the cell, beside a hit
-// As near to 1 another member's field is where they meet; and how far beside it, over the cell, sums tell which is
-// nearer.
+// Two members of a union meet at a hit where the other's field is within `of_joint` of 1 there. The normal is then
+// taken `beside_joint` of the cell's size away from the hit, where sums tell which of the two has the larger field.
 constexpr double of_joint = 1e-6, beside_joint = 1e-8;
 
 }  // namespace

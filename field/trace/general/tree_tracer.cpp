@@ -25,14 +25,8 @@ constexpr std::size_t most_asked = 1024;
 // Bounds of members in cells are off by less than the one, sums by less than the other.
 constexpr double members_are_off = 1e-6, sums_are_off = 1e-10;
 
-Vec3<Interval> stretch_of(const Ray& ray, const Interval& t) {
-  const Vec3d& o = ray.origin;
-  const Vec3d& d = ray.direction;
-  return {Interval(o.x) + t * Interval(d.x), Interval(o.y) + t * Interval(d.y), Interval(o.z) + t * Interval(d.z)};
-}
-
 // The box without slabs at its sides that bounds prove to be outside.
-Box3 trimmed(const FieldTree& tree, const Member& member) {
+Box3 trimmed(const FieldTree& tree, const UnionMember& member) {
   constexpr int halvings = 10;
   Box3 box = member.bounds;
   for (std::size_t i = 0; i < 3; ++i)
@@ -53,10 +47,10 @@ Box3 trimmed(const FieldTree& tree, const Member& member) {
 
 Result<TreeTracer> TreeTracer::make(FieldTree tree, const Box3& within, TreeDivision division) {
   TreeTracer made(std::move(tree), std::move(division));
-  std::vector<Member> all = members(made.tree_);
-  for (Member& member : all) member.bounds = common(member.bounds, within);
+  std::vector<UnionMember> all = members(made.tree_);
+  for (UnionMember& member : all) member.bounds = common(member.bounds, within);
   if (all.size() > 1 && all.size() <= most_asked) made.members_ = all;
-  for (const Member& member : all) {
+  for (const UnionMember& member : all) {
     if (member.bounds.empty()) continue;
     if (!(is_finite(member.bounds.lower) && is_finite(member.bounds.upper)))
       return failure("the surface of this field has no end; intersect it with something bounded");
@@ -72,7 +66,7 @@ Result<TreeTracer> TreeTracer::make(FieldTree tree, const Box3& within, TreeDivi
 }
 
 // In the order of space.
-void TreeTracer::divide(const Member& member) {
+void TreeTracer::divide(const UnionMember& member) {
   roots_.push_back(TreeCell::root(tree_, member.bounds, member.record, *division_));
   std::vector<const TreeCell*> level{roots_.back().get()};
   for (int depth = 1; !level.empty(); ++depth) {
@@ -149,7 +143,7 @@ std::optional<TreeHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, b
   const Cell& c = cells_[cell];
   Interval t = clip(c.box, ray);
   log.enter = t.lo;
-  const double nearly_ended = 0x1p-30 * std::max(std::fabs(t.hi), max_component(abs(ray.origin)));  // gaps are shorter
+  const double nearly_ended = 0x1p-30 * ray.size_at(t.hi);  // gaps are shorter
   const bool is_cut = any && ray.t_max + nearly_ended < t.hi;
   if (is_cut) t.hi = ray.t_max + nearly_ended;
   Ray onward = ray;
@@ -157,7 +151,7 @@ std::optional<TreeHit> TreeTracer::first_hit(std::size_t cell, const Ray& ray, b
   // of half the body, as the first cells are eighths
   const double body = (1 << (first_levels - 1)) * max_component(c.box.size());
   const std::function<bool(const Interval&)> covered = [&](const Interval& stretch) {
-    return !members_.empty() && largest_of_others(c.member, stretch_of(ray, stretch)).lo > 1 + sums_are_off;
+    return !members_.empty() && largest_of_others(c.member, places_on(ray, stretch)).lo > 1 + sums_are_off;
   };
   while (t.lo <= t.hi) {
     // Any crossing is told by a place behind it: not what is_covered() asks for.
@@ -184,7 +178,7 @@ bool TreeTracer::is_inside_another(std::uint32_t member, const Box3& box) const 
 // Whether another member is all around a crossing. For a ray from outside it is so only behind a crossing of that
 // member: what is asked is the place before the crossing, by more than crossings are misplaced.
 bool TreeTracer::is_covered(std::uint32_t member, const Ray& ray, double t) const {
-  const double size = std::max(std::fabs(t), max_component(abs(ray.origin)));
+  const double size = ray.size_at(t);
   const Vec3d p = ray.at(std::max(ray.t_min, t - 64 * rounding::ulp * size));
   return largest_of_others(member, p) > 1 + members_are_off;
 }
@@ -192,9 +186,9 @@ bool TreeTracer::is_covered(std::uint32_t member, const Ray& ray, double t) cons
 // How far behind a crossing that is passed bounds prove at once that others are passed too: where a ray runs along a
 // face inside another member, rounding makes one after the other. The next stride is longer or shorter, as that was so.
 double TreeTracer::covered_until(std::uint32_t member, const Ray& ray, double t, double& stride) const {
-  const double shortest = 0x1p-34 * std::max(std::fabs(t), max_component(abs(ray.origin)));
+  const double shortest = 0x1p-34 * ray.size_at(t);
   const Interval ahead(t, t + std::max(stride, shortest));
-  const bool proved = largest_of_others(member, stretch_of(ray, ahead)).lo > 1 + sums_are_off;
+  const bool proved = largest_of_others(member, places_on(ray, ahead)).lo > 1 + sums_are_off;
   stride = proved ? 4 * (ahead.hi - t) : 0.25 * stride;
   return proved ? ahead.hi : t;
 }
@@ -203,7 +197,7 @@ double TreeTracer::covered_until(std::uint32_t member, const Ray& ray, double t,
 // 1 before and behind, and bounds prove that between no more is outside than what sums and positions are off.
 bool TreeTracer::is_joint(std::uint32_t member, const Ray& ray, double t) const {
   constexpr double least_reach = 1e-11, most_reach = 1e-8, rounding_of_sums = 1e-13;
-  const double size = std::max(std::fabs(t), max_component(abs(ray.origin)));
+  const double size = ray.size_at(t);
   const auto largest_at = [&](const auto& p) { return max(value(tree_, p, member), largest_of_others(member, p)); };
   // Where fields are flat sums tell the side only farther away.
   double by = least_reach * size;
@@ -213,7 +207,7 @@ bool TreeTracer::is_joint(std::uint32_t member, const Ray& ray, double t) const 
     if (off < 0) return false;
     if (off > rounding_of_sums) break;
   }
-  const auto enclosure = [&](const Interval& along) { return largest_at(stretch_of(ray, along)); };
+  const auto enclosure = [&](const Interval& along) { return largest_at(places_on(ray, along)); };
   const Interval here = enclosure(Interval(t));
   const double least = 1 - sums_are_off - 2 * (here.hi - here.lo), shortest = 4 * rounding::ulp * size;
   double from = t - by, step = 2 * by;

@@ -4,10 +4,10 @@
 // up to 1024 members, crossings inside another one are passed, so that it is from inside too, and cells inside another
 // one are dropped. For each of them there is an octree over the box that can hold its surface: parts that bounds prove
 // to be all outside or all inside are dropped, the others are divided, when rays come, until the surface in them is one
-// sheet to all appearances. Each cell keeps the tree restricted to it. Of a union of very many, a member without
-// operators is one cell. Along a ray, enclosures of the field and of its slope tell intervals without a root from those
-// with exactly one; what remains is divided around its middle.   [interval Newton isolation: Moore 1966; pruned
-// programs: Keeter 2020]
+// sheet to all appearances. Each cell keeps what is left of the tree there (localized()). Of a union of very many, a
+// member without operators is one cell. Along a ray, enclosures of the field and of its slope tell intervals without a
+// root from those with exactly one; what remains is divided around its middle.   [interval Newton isolation: Moore
+// 1966; pruned programs: Keeter 2020]
 #pragma once
 
 #include <cstddef>
@@ -67,7 +67,7 @@ class TreeTracer {
       : tree_(std::move(tree)),
         division_(std::make_unique<const TreeDivision>(std::move(division))),
         only_material_(only_material(tree_)) {}
-  void divide(const Member&);
+  void divide(const UnionMember&);
   double error_at(const Cell&) const;
   UnitVec3 normal_at_joint(const Cell&, const Vec3d& position, const Vec3d& along, const UnitVec3& of_member) const;
   static double shortest_step(const Cell&);
@@ -89,7 +89,7 @@ class TreeTracer {
   std::unique_ptr<const TreeDivision> division_;  ///< where it stays for the cells
   std::optional<MaterialId> only_material_;       ///< of all leaves
   Box3 bounds_;
-  std::vector<Member> members_;  ///< of a union, where there are few enough to ask all of them at a crossing
+  std::vector<UnionMember> members_;  ///< of a union, where there are few enough to ask all of them at a crossing
   std::vector<std::unique_ptr<const TreeCell>> roots_;
   std::vector<Cell> cells_;
 };
