@@ -9,17 +9,11 @@
 #include <fmt/core.h>
 
 #include "renderer/bench/workload_text.h"
+#include "renderer/scene/files/ascii.h"
 #include "renderer/scene/files/skeleton_file.h"
 
 namespace marrow {
 namespace {
-
-bool is_text(const std::string& name) {
-  std::string ending = std::filesystem::path(name).extension().string();
-  for (char& c : ending)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return ending == ".txt";
-}
 
 // What can stand in a scene file and in the name of a file everywhere.
 std::string stem_of(const std::string& name) {
@@ -90,7 +84,7 @@ std::string contents_of(const Workload& w) {
 
 }  // namespace
 
-bool is_workload_file(const std::string& name) { return is_text(name) || skeleton_format_of(name); }
+bool is_workload_file(const std::string& name) { return ending_of(name) == ".txt" || skeleton_format_of(name); }
 
 Result<WorkloadFile> read_workload(std::string_view bytes, const std::string& name) {
   const auto format = skeleton_format_of(name);

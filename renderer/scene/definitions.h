@@ -20,7 +20,6 @@ class Definitions {
  public:
   /// `defs` is the map of the scene. Reports what is unknown or used in a circle.
   void read(const Value& defs, Reader&);
-  bool knows(const std::string& name) const { return known_.contains(name); }
   std::vector<std::string> names() const;
   /// The subtree in `field`, which is reader.field; added by the first use. Nothing when the subtree has mistakes,
   /// which are reported, or the budget is spent.

@@ -88,7 +88,7 @@ std::string json_string(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
-    if (c == '\n') out += "\\n";
+    if (c >= 0 && c < ' ') out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
     else out += c;
   }
   return out + '"';

@@ -7,6 +7,8 @@
 
 #include <fmt/core.h>
 
+#include "renderer/scene/files/ascii.h"
+
 namespace marrow {
 namespace {
 
@@ -70,9 +72,7 @@ std::optional<double> parse_number(std::string_view text) {
 }
 
 std::string number_hint(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string lower = lower_case(text);
   const std::string_view bare = std::string_view(lower).substr(
       lower.find_first_not_of("+-.") == std::string::npos ? 0 : lower.find_first_not_of("+-."));
   if (bare == "nan" || bare == "inf" || bare == "infinity") return "numbers must be finite";

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/scene/files/ascii.h"
 #include "renderer/scene/files/node_list.h"
 #include "renderer/scene/files/parents.h"
 #include "renderer/scene/files/table_rows.h"
@@ -19,13 +20,6 @@ namespace {
 
 enum Column : std::size_t { X, Y, Z, Radius, Strand, Id, Parent, Columns };
 constexpr std::array<const char*, Columns> column_names = {"x", "y", "z", "radius", "strand", "id", "parent"};
-
-std::string lower(std::string_view text) {
-  std::string made(text);
-  for (char& c : made)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return made;
-}
 
 class CsvReader {
  public:
@@ -90,7 +84,7 @@ class CsvReader {
 
   void find_usual(Column column, const std::vector<TableField>& first) {
     for (std::size_t i = 0; i < first.size(); ++i)
-      if (lower(first[i].text) == column_names[column]) return void(places_[column] = i);
+      if (lower_case(first[i].text) == column_names[column]) return void(places_[column] = i);
   }
 
   void check_columns(const std::vector<TableField>& first, bool are_all_counted) {

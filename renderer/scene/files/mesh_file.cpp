@@ -2,21 +2,15 @@
 #include "renderer/scene/files/mesh_file.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include "renderer/scene/files/ascii.h"
+
 namespace marrow {
 namespace {
-
-std::string ending_of(const std::string& name) {
-  std::string ending = std::filesystem::path(name).extension().string();
-  for (char& c : ending)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return ending;
-}
 
 // Assimp never ends on a PLY file whose header does not.
 bool header_ends(std::string_view bytes, const std::string& ending) {

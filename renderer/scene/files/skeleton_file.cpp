@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <utility>
 
+#include "renderer/scene/files/ascii.h"
 #include "renderer/scene/files/csv.h"
 #include "renderer/scene/files/cyhair.h"
 #include "renderer/scene/files/obj_lines.h"
@@ -25,9 +25,7 @@ constexpr std::pair<std::string_view, SkeletonFormat> endings[] = {
 }  // namespace
 
 std::optional<SkeletonFormat> skeleton_format_of(const std::string& name) {
-  std::string ending = std::filesystem::path(name).extension().string();
-  for (char& c : ending)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string ending = ending_of(name);
   const auto* found =
       std::find_if(std::begin(endings), std::end(endings), [&](const auto& e) { return e.first == ending; });
   return found == std::end(endings) ? std::nullopt : std::optional(found->second);
