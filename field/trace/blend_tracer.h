@@ -46,7 +46,7 @@ struct TraceOptions {
   std::size_t compact_bytes = std::size_t{1} << 31;
   /// Empty: by the number of primitives.
   std::optional<CellTreeSettings> cells{};
-  /// To which far sources of the two levels are gathered, 4, 6 or 8; empty: by the number of pieces.
+  /// The degree to which far sources of the two levels are gathered, 4, 6 or 8; empty: by the number of pieces.
   std::optional<int> coarse_far_degree{}, fine_far_degree{};
   /// Whether slots of blocks tell which of their eighths may hold surface; empty: by the number of pieces and samples.
   std::optional<bool> eighths{};
@@ -155,8 +155,9 @@ class BlendTracer {
   /// first_hit() in a tile, for the rays of a set.
   void first_hits(std::size_t tile, const RayPacket&, const LaneSet& rays, bool any, CellHits&) const;
   /// The first crossing of the surface in a part, from either side, that counts. Each cell is searched by itself, from
-  /// the side on which the ray comes into it: where that is inside, beside what it has met before. Crossings that
-  /// follow one that does not count by less than the shortest gap (kernels/block_kernels.h) are passed with it.
+  /// the side on which the ray comes into it; what it meets inside the part, before the cell, does not tell that side.
+  /// Crossings that follow one that does not count by less than the shortest gap (kernels/block_kernels.h) are passed
+  /// with it.
   std::optional<CellHit> first_crossing(const TracePart&, const Ray&, const CrossingFilter&, CellLog&) const;
   /// Normal and starting point at a hit in this tile.
   SurfacePoint surface_at(std::size_t tile, const Vec3d& position) const;

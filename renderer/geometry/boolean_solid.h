@@ -57,7 +57,8 @@ class BooleanSolid final : public Solid {
   struct OperandPart {
     std::size_t operand;
     SolidPart part;
-    bool all_counts, some_counts;  // some: it is known that it is not known of all
+    // Of the operand's surface in it: whether all of it is surface of the whole; whether only some may be.
+    bool all_counts, some_counts;
   };
   BooleanSolid(FieldTree whole, const Box3& bounds, SetExpression, std::vector<std::unique_ptr<OperandSolid>>);
   void add_elements(std::size_t operand);

@@ -44,13 +44,13 @@ struct Traced {
   std::shared_ptr<RaySpacing> spacing = std::make_shared<RaySpacing>();
 };
 
-// With the tracers of operands; null where only the general one knows them.
+// Blends under set operations, and for each the tracer of blends; null for what the general tracer has to trace.
 struct Combined {
   CombinedBlends blends;
   std::vector<std::shared_ptr<Traced>> tracers;
 };
 
-// A field of an object, and for each of its blends the tracer; null where only the general one knows it.
+// A field of an object, and for each of its blends the tracer of blends; null for what the general tracer has to trace.
 struct Compiled {
   FieldProgram program;
   std::vector<std::shared_ptr<Traced>> tracers;
@@ -177,7 +177,6 @@ class Builder {
     }
   }
 
- private:
   const SceneDescription& scene_;
   const SurfaceOptions& options_;
   std::shared_ptr<RaySpacing> in_world_ = std::make_shared<RaySpacing>();

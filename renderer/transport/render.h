@@ -1,4 +1,4 @@
-// The picture is made here: the only parallel loop of rendering.
+// The picture is made here: the only parallel loop over samples.
 #pragma once
 
 #include <atomic>

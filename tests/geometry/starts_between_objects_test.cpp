@@ -63,11 +63,16 @@ TEST(StartsBetweenObjects, ABallOnTheFloorBesideOthers) {
 TEST(StartsBetweenObjects, FromTheContactItself) {
   Random random(213);
   const auto surfaces = surfaces_of({ball({}, 1), ball({2, 0, 0}, 1)}, {plane({0, -1, 0}, {0, 1, 0})});
+  int hits = 0;
   for (int i = 0; i < 3000; ++i) {
     const Vec3d contact = i % 2 == 0 ? Vec3d{0, -1, 0} : Vec3d{1, 0, 0};
     const auto hit = surfaces->first_hit({contact, normalize(random_direction(random))});
-    EXPECT_TRUE(!hit || is_finite(hit->outside));
+    if (!hit) continue;
+    ++hits;
+    EXPECT_TRUE(is_finite(hit->outside));
+    EXPECT_LE(length(hit->outside - hit->position), 0.1);
   }
+  EXPECT_GT(hits, 1000);
 }
 
 // Through a thousand bounces, half of them along the surface, no ray gets out of a room whose walls bodies go through.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -48,20 +50,29 @@ PictureRows picture_of(const Film& film, const FilmSummary& summary, const Scene
   return picture;
 }
 
-Diagnostics write(const PictureRows& picture, const SceneDescription& scene, const Preparation& ready) {
+Status write_display(const std::filesystem::path& png, const PictureRows& picture, const SceneDescription& scene,
+                     const Preparation& ready) {
+  const auto image = ready.display->apply(picture);
+  if (!image) return image.why();
+  return write_png(png, *image, PngDepth::Bits8,
+                   {{"marrow/sceneHash", scene.hash}, {"marrow/view", ready.display->name()}});
+}
+
+struct Written {
+  PictureOutputs outputs;  // those that are there now
   Diagnostics problems;
-  const auto keep = [&](const Diagnostics& why) { problems.insert(problems.end(), why.begin(), why.end()); };
-  if (ready.outputs.exr) {
-    if (const auto status = write_exr(*ready.outputs.exr, picture); !status) keep(status.why());
-  }
-  if (ready.outputs.png) {
-    const auto image = ready.display->apply(picture);
-    if (!image) return keep(image.why()), problems;
-    const auto status = write_png(*ready.outputs.png, *image, PngDepth::Bits8,
-                                  {{"marrow/sceneHash", scene.hash}, {"marrow/view", ready.display->name()}});
-    if (!status) keep(status.why());
-  }
-  return problems;
+};
+
+Written write(const PictureRows& picture, const SceneDescription& scene, const Preparation& ready) {
+  Written written{.outputs = ready.outputs, .problems = {}};
+  const auto keep = [&](std::optional<std::filesystem::path>& output, const Status& status) {
+    if (status) return;
+    output.reset();
+    written.problems.insert(written.problems.end(), status.why().begin(), status.why().end());
+  };
+  if (ready.outputs.exr) keep(written.outputs.exr, write_exr(*ready.outputs.exr, picture));
+  if (ready.outputs.png) keep(written.outputs.png, write_display(*ready.outputs.png, picture, scene, ready));
+  return written;
 }
 
 Diagnostics doubts_about(const FilmSummary& film) {
@@ -79,6 +90,7 @@ Diagnostics doubts_about(const FilmSummary& film) {
 }
 
 std::string closing_line(const Film& film, const PictureOutputs& outputs) {
+  if (!outputs.exr && !outputs.png) return "the picture is lost";
   std::string names;
   for (const auto& path : {outputs.exr, outputs.png})
     if (path) names += (names.empty() ? "" : " and ") + path->string();
@@ -91,11 +103,9 @@ std::string closing_line(const Film& film, const PictureOutputs& outputs) {
 ExitCode finish(const Film& film, const SceneDescription& scene, const RenderSettings& settings,
                 const Preparation& ready, bool strict, ProgressLine& progress) {
   const FilmSummary summary = film.summary();
-  if (const auto problems = write(picture_of(film, summary, scene, settings), scene, ready); !problems.empty()) {
-    progress.close("the picture is lost");
-    return report(problems, ExitCode::WriteFailed);
-  }
-  progress.close(closing_line(film, ready.outputs));
+  const Written written = write(picture_of(film, summary, scene, settings), scene, ready);
+  progress.close(closing_line(film, written.outputs));
+  if (!written.problems.empty()) return report(written.problems, ExitCode::WriteFailed);
   if (film.stopped_by == StopReason::Interrupted) return ExitCode::Interrupted;
   const auto doubts = doubts_about(summary);
   return report(doubts, strict && !doubts.empty() ? ExitCode::Doubtful : ExitCode::Ok);

@@ -30,7 +30,8 @@ struct FilmSample {
   bool covered = false;  ///< a surface or a visible light was met
 };
 
-/// Sums in double, in the order of the samples. One thread adds all samples of a pixel.
+/// Sums in the order of the samples, in double; of albedo in float, off by 2^-24 of the
+/// sum a sample at most. One thread adds all samples of a pixel.
 class PixelSums {
  public:
   /// A radiance that is not finite or is negative is not added but counted; returns whether it was added.

@@ -132,6 +132,8 @@ class Eighths<PacketFloat> {
   }
 
  private:
+  // Other threads may write these bytes meanwhile: a byte as a whole, once, from unknown to what it tells. The gather,
+  // of which C++ knows no atomic one, sees one or the other, as processors load aligned words whole.
   PacketInt four_about(PacketInt address, PacketMask active) const {
     return of_all_ != nullptr ? gather(of_all_, address >> 2) : gather_from(bytes_, address & ~3, active);
   }
