@@ -10,6 +10,7 @@
 
 #include "field/number/variables_at.h"
 #include "tests/stress/change_search.h"
+#include "tests/stress/ulp_of_float.h"
 
 namespace marrow::test {
 namespace {
@@ -23,11 +24,6 @@ void note(TreeVerdict& v, const TreeScene& scene, const Ray& ray, const char* fa
                 scene.name().c_str(), family, ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x(),
                 ray.direction.y(), ray.direction.z());
   v.offenders.emplace_back(line);
-}
-
-double ulp_of_float(double t) {
-  const auto f = static_cast<float>(t);
-  return static_cast<double>(std::nextafter(f, std::numeric_limits<float>::infinity()) - f);
 }
 
 // The part of a ray around the cells, and as much again.

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "tests/stress/ulp_of_float.h"
+
 namespace marrow::test {
 namespace {
 
@@ -47,11 +49,6 @@ bool is_bare_point(const StressScene& scene, const Ray& ray, double t) {
 
 // Sums in float are known to this, whatever the tracer does.
 constexpr double field_rounding = 5e-7;
-
-double ulp_of_float(double t) {
-  const auto f = static_cast<float>(t);
-  return static_cast<double>(std::nextafter(f, std::numeric_limits<float>::infinity()) - f);
-}
 
 void judge_limits(const StressScene& scene, const Ray& ray, const SurfaceHit& hit, double along, const char* family,
                   Verdict& v) {

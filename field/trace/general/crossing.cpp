@@ -19,8 +19,6 @@ using OnRay = Jet<Interval, 1>;
 // after each further so many, gaps count as short that are 16 times as long: what is left undecided is reported, and
 // what lies behind it is still searched.
 constexpr std::uint32_t first_evaluations = 2000, more_evaluations = 500;
-// Sums are not known any better: a piece that stays so near to 1, on one side at its ends, cannot be decided.
-constexpr double sums_are_off = 1e-10;
 constexpr double inf = std::numeric_limits<double>::infinity();
 
 class Search {
@@ -91,6 +89,7 @@ class Search {
       allowed_ += more_evaluations;
       coarseness_ *= 16;
     }
+    // A piece that stays so near to 1, on one side at its ends, cannot be decided.
     if (length(piece) <= coarseness_ * gap(piece.end) || is_flat(f.value, piece, sums_are_off)) {
       give_up(piece);
       return;

@@ -10,6 +10,9 @@
 
 namespace marrow {
 
+/// Fields are not known any better than to this: rounding of sums over all primitives (3e-11 of them), with a margin.
+constexpr double sums_are_off = 1e-10;
+
 struct CrossingSearch {
   std::optional<double> t;                                     ///< of the crossing
   double undecided = std::numeric_limits<double>::infinity();  ///< where the first gap begins that nothing could decide

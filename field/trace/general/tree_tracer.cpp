@@ -22,8 +22,8 @@ constexpr int first_levels = 3;
 constexpr std::size_t few_members = 64;
 // Of so many members at most, all are asked at a crossing whether it is inside them: 2 us.
 constexpr std::size_t most_asked = 1024;
-// Bounds of members in cells are off by less than the one, sums by less than the other.
-constexpr double members_are_off = 1e-6, sums_are_off = 1e-10;
+// Bounds of members in cells are off by less.
+constexpr double members_are_off = 1e-6;
 
 // The box without slabs at its sides that bounds prove to be outside.
 Box3 trimmed(const FieldTree& tree, const UnionMember& member) {
