@@ -128,6 +128,12 @@ Side BlendTracer::clear_side(const Box3& box) const {
   return SideBound(state_->sources, state_->coarse, state_->iso).side(box);
 }
 
+double BlendTracer::crossing_length(const Vec3d& position) const {
+  double nearest = Box3::inf;
+  for (const Piece& piece : state_->sources.pieces()) nearest = std::min(nearest, distance(piece, position));
+  return 2 * static_cast<double>(shortest_gap) * nearest;
+}
+
 bool BlendTracer::leaves_surface(const Ray& ray) const {
   if (ray.around == nullptr || ray.around->block == nullptr) return false;
   const Block& b = *static_cast<const Block*>(ray.around->block);

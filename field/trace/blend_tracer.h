@@ -166,6 +166,10 @@ class BlendTracer {
   /// Of each of the hits, to the same bits; sooner for many.
   void surfaces_at(std::span<const SurfaceQuery> hits, std::span<SurfacePoint> found) const;
 
+  /// What is undecided no farther than this before a hit is the hit itself, as finely as roots are told apart: two of
+  /// the shortest gaps at the distance of the nearest skeleton. Asks all skeletons.
+  double crossing_length(const Vec3d& position) const;
+
   /// From a hit against its normal: a place where the field is certainly above 1, if one is found nearby.
   std::optional<Vec3d> inside_beside(const SurfaceQuery& hit, const UnitVec3& normal) const;
 

@@ -59,6 +59,11 @@ Box3 BooleanSolid::element_box(std::size_t element) const {
   return operands()[e.operand]->element_box(e.element);
 }
 
+double BooleanSolid::crossing_length(std::size_t element, const Ray& ray, double t) const {
+  const Element& e = elements_[element];
+  return operands()[e.operand]->crossing_length(e.element, ray, t);
+}
+
 bool BooleanSolid::is_left_by(const Ray& ray) const {
   for (std::size_t i = 0; i < operands().size(); ++i)
     if (sides_.is_needed(i, ray.at(ray.t_min)) && operands()[i]->is_left_by(ray)) return true;

@@ -42,6 +42,7 @@ class BooleanSolid final : public Solid {
   std::optional<double> hit_in_part(const SolidPart&, const Ray&, bool any, ElementLog&) const override;
   bool traces_packets() const override;
   void hits_in_parts(std::span<const LanesInPart>, const RayPacket&, bool any, PacketLog&) const override;
+  double crossing_length(std::size_t, const Ray&, double t) const override;
   void describe(std::span<const HitToDescribe>) const override;
   std::size_t primitive_count() const override;
   std::size_t bytes() const override;

@@ -228,11 +228,24 @@ bool EmbreeSurfaces::is_resolved(const PartHierarchy::Hit& found, const Ray& ray
   return rounding <= finest * longest_side(solids_[found.solid].solid->element_box(found.element));
 }
 
+// Whether no surface can have been missed before the end. Where a ray comes to the surface in the face between two
+// cells the first of them has an undecided gap at its end, and the second one the hit at its beginning: they are one
+// crossing.
+bool EmbreeSurfaces::is_decided(const PartHierarchy::Hit& found, double end, const Ray& ray) const {
+  if (!(found.undecided < end)) return true;
+  if (!found.found || found.reached() != end || found.undecided_in != found.solid) return false;
+  const Solid& solid = *solids_[found.solid].solid;
+  // Gaps are 2e-5 of the distance at most: what is farther away than this is not worth asking all skeletons for.
+  const double before = end - found.undecided;
+  return before < 1e-3 * longest_side(solid.element_box(found.element)) &&
+         before <= solid.crossing_length(found.element, ray, found.t);
+}
+
 // Visits that begin at the end or behind it are made or not as the traversal happens to go: they do not count.
 RayRecord EmbreeSurfaces::record_of(const std::vector<RayVisit>& visits, const PartHierarchy::Hit& found,
                                     const PlaneHit& behind, const Ray& ray) const {
   const double end = std::min({found.reached(), behind.t, ray.t_max});
-  RayRecord r{.evaluations = 0, .certified = !(found.undecided < end) && (!found.found || is_resolved(found, ray))};
+  RayRecord r{.evaluations = 0, .certified = is_decided(found, end, ray) && (!found.found || is_resolved(found, ray))};
   for (const RayVisit& v : visits)
     if (v.begin < end) r.evaluations += v.evaluations;
   return r;

@@ -78,6 +78,7 @@ class EmbreeSurfaces final : public Surfaces {
   bool hides(const PartHierarchy::Hit& any, const Ray&) const;
   PartHierarchy::Hit nearest_on(const Ray&, std::vector<RayVisit>*) const;
   bool is_resolved(const PartHierarchy::Hit&, const Ray&) const;
+  bool is_decided(const PartHierarchy::Hit&, double end, const Ray&) const;
   RayRecord record_of(const std::vector<RayVisit>&, const PartHierarchy::Hit&, const PlaneHit& behind,
                       const Ray&) const;
   const PartHierarchy& finest() const { return *finest_.load(std::memory_order_acquire); }

@@ -91,6 +91,11 @@ FieldSolid::LocalRay FieldSolid::to_local(const Ray& ray) const {
           stretch};
 }
 
+double FieldSolid::crossing_length(std::size_t, const Ray& ray, double t) const {
+  const auto [local, stretch] = to_local(ray);
+  return tracer_->crossing_length(local.at(t * stretch)) / stretch;
+}
+
 void FieldSolid::to_world(const CellLog& log, double stretch, std::size_t visits_before, ElementLog& out) const {
   out.enter = log.enter;
   out.undecided = log.undecided;

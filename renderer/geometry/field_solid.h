@@ -30,6 +30,7 @@ class FieldSolid final : public OperandSolid {
   bool traces_packets() const override { return tracer_->traces_packets(); }
   const void* family() const override { return tracer_.get(); }
   void hits_in_parts(std::span<const LanesInPart>, const RayPacket&, bool any, PacketLog&) const override;
+  double crossing_length(std::size_t, const Ray&, double t) const override;
   void describe(std::span<const HitToDescribe>) const override;
   std::optional<double> crossing(const SolidPart&, const Ray&, const CrossingFilter&, ElementLog&) const override;
   std::optional<Box3> cell_box(const SolidPart&) const override;

@@ -17,10 +17,16 @@ struct PartHit {
   std::size_t solid = 0, element = 0;
   const void* place = nullptr;                                 ///< ElementLog's
   double enter = 0;                                            ///< where the ray came into the part
-  double undecided = std::numeric_limits<double>::infinity();  ///< of any part that was visited
+  double undecided = std::numeric_limits<double>::infinity();  ///< the first of all parts that were visited
+  std::size_t undecided_in = 0;                                ///< the solid of that one
   bool found = false, begins_inside = false;  ///< begins_inside: as in ElementLog; then the hit is not one
 
   double reached() const { return std::max(t, enter); }
+  void note_undecided(double where, std::size_t of_solid) {
+    if (!(where < undecided)) return;
+    undecided = where;
+    undecided_in = of_solid;
+  }
 };
 
 /// The ray must stay where it is.
@@ -54,7 +60,7 @@ class PartVisit {
   /// Takes in what a part answered; t is infinity when it holds no hit. Whether `best` is a new hit.
   bool take(std::size_t index, const Solid& solid, const SolidPart& part, double t, const ElementLog& log) {
     note_side(solid, log);
-    best.undecided = std::min(best.undecided, log.undecided);
+    best.note_undecided(log.undecided, index);
     const double reached = std::max(t, log.enter);
     if (!(t < std::numeric_limits<double>::infinity()) || reached > best.reached()) return false;
     if (reached == best.reached() &&

@@ -102,6 +102,9 @@ class Solid {
   }
   /// The same, sooner where there are few rays.
   static void hits_one_by_one(std::span<const LanesInPart>, const RayPacket&, bool any, PacketLog& log);
+  /// Of a hit of a ray in an element, by its t: as BlendTracer::crossing_length(), in t; 0 where the search has seen to
+  /// it.
+  virtual double crossing_length(std::size_t, const Ray&, double) const { return 0; }
   /// Fills normal, outside and material of hits whose positions are known.
   virtual void describe(std::span<const HitToDescribe>) const = 0;
   virtual std::size_t primitive_count() const = 0;

@@ -133,7 +133,7 @@ PartHit UnitedSolids::uncovered(PartHit hit, const Ray& ray, std::vector<RayVisi
     const auto cover = cover_of(hit, ray);
     if (!cover) break;
     PartHit exit = exit_of(*cover, ray, hit.t, visits);
-    exit.undecided = std::min(exit.undecided, hit.undecided);
+    exit.note_undecided(hit.undecided, hit.undecided_in);
     if (exit.found && !(exit.t > hit.t)) break;
     hit = exit;
   }
@@ -144,7 +144,8 @@ PartHit UnitedSolids::first_hit(const Ray& ray, std::vector<RayVisit>* visits) c
   PartHit best;
   for (const Body& body : bodies_) {
     PartHit hit = uncovered(nearest(body, ray, visits), ray, visits);
-    hit.undecided = best.undecided = std::min(best.undecided, hit.undecided);
+    hit.note_undecided(best.undecided, best.undecided_in);
+    best.note_undecided(hit.undecided, hit.undecided_in);
     if (hit.found && (hit.t < best.t || (hit.t == best.t && hit.solid < best.solid))) best = hit;
   }
   return best;
