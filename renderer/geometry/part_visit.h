@@ -23,7 +23,7 @@ struct PartHit {
 
   double reached() const { return std::max(t, enter); }
   void note_undecided(double where, std::size_t of_solid) {
-    if (!(where < undecided)) return;
+    if (std::tie(where, of_solid) >= std::tie(undecided, undecided_in)) return;  // whatever is asked first
     undecided = where;
     undecided_in = of_solid;
   }
