@@ -131,7 +131,7 @@ Side BlendTracer::clear_side(const Box3& box) const {
 double BlendTracer::crossing_length(const Vec3d& position) const {
   double nearest = Box3::inf;
   for (const Piece& piece : state_->sources.pieces()) nearest = std::min(nearest, distance(piece, position));
-  return 2 * static_cast<double>(shortest_gap) * nearest;
+  return static_cast<double>(crossing_gap) * nearest;
 }
 
 bool BlendTracer::leaves_surface(const Ray& ray) const {

@@ -106,6 +106,10 @@ struct CellRoots {
 /// behind it, such a gap is the root as well as it is known.
 inline constexpr float shortest_gap = 2e-5F;
 
+/// What belongs to a crossing, in the same unit: a stretch that was not decided and ends this near to the root is the
+/// root as well as it is known. One gap, and one for where the root in it may be told.
+inline constexpr float crossing_gap = 2 * shortest_gap;
+
 /// The same of gaps that end at a certified stretch or with the run. Beside a root certificates are as short as
 /// shortest_gap, so that two of them leave gaps of that size which more samples close; an eighth is three halvings.
 inline constexpr float shortest_gap_between = shortest_gap / 8;

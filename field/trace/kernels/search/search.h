@@ -124,7 +124,7 @@ struct Search {
   // known.
   F undecided_before(F crossing) const {
     const F distance = select(have_last, last.distance, select(have_inside, inside.distance, all_lanes<F>(1)));
-    const F tolerance = 2 * shortest_gap * distance;
+    const F tolerance = crossing_gap * distance;
     return select(doubt.end + tolerance >= crossing, undecided, min_of(undecided, doubt.begin));
   }
 
