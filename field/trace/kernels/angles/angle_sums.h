@@ -6,16 +6,29 @@ struct AngleSums {
 };
 
 template <int Exponent>
-inline void add_angle_sums(const float* first_group, int groups, int exponent, const Probe& probe, AngleSums& out) {
-  V16 none{};
-  const V16 sums = sum_in_registers<12>(first_group, none, [&](const float* first, Native&, auto& a) {
-    for_each_group(first, groups, probe.px, probe.py, probe.pz, [&](Native share, Native radius, const Away& d) {
-      const Terms<Exponent> of(share, radius, exponent, d);
-      a[0] += of.w0;
-      a[1] += of.w2 * (d.x * probe.ex + d.y * probe.ey + d.z * probe.ez);
-      a[2] += of.w2;
-    });
-  });
+struct SumsOfAngles {
+  static constexpr int count = 3;
+  using Ready = typename SumsAlong<Exponent>::Ready;
+
+  const Native (&e)[3];
+  int exponent;
+
+  Ready ready(Native share, Native radius, const Away& d) const {
+    return SumsAlong<Exponent>{e, exponent}.ready(share, radius, d);
+  }
+  template <class Into>
+  void add(const Ready& s, Native radius, const Into& into) const {
+    const Terms of(s, radius);
+    into(0, s.field);
+    into(1, of.w2 * s.along);
+    into(2, of.w2);
+  }
+};
+
+template <int Exponent>
+inline void add_angle_sums(const float* group, int groups, int exponent, const Probe& probe, AngleSums& out) {
+  V16 unused{};
+  const V16 sums = sum_groups(group, groups, probe.place, SumsOfAngles<Exponent>{probe.direction, exponent}, unused);
   float s[16];
   __builtin_memcpy(s, &sums, sizeof s);
   out.value += s[0];

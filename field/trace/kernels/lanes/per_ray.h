@@ -73,6 +73,7 @@ inline PacketInt whole_part(PacketFloat v) { return __builtin_convertvector(stat
 inline float to_float(int v) { return static_cast<float>(v); }
 inline PacketFloat to_float(PacketInt v) { return __builtin_convertvector(static_cast<NativeInt>(v), Native); }
 
+// With AVX2 lane by lane, too: on processors that have no AVX-512 its gathers take 1.5 to 2 times as long.
 inline float gather(const float* table, int index) { return table[index]; }
 template <class V, class T>
 inline V gather_lanes(const T* table, PacketInt index) {
@@ -83,8 +84,6 @@ inline V gather_lanes(const T* table, PacketInt index) {
 inline PacketFloat gather(const float* table, PacketInt index) {
 #if defined(__AVX512F__)
   return __builtin_ia32_gathersiv16sf(Native{}, table, index, -1, 4);
-#elif defined(__AVX2__)
-  return __builtin_ia32_gathersiv8sf(Native{}, table, index, reinterpret_cast<Native>(NativeInt{} - 1), 4);
 #else
   return gather_lanes<Native>(table, index);
 #endif
@@ -92,8 +91,6 @@ inline PacketFloat gather(const float* table, PacketInt index) {
 inline PacketInt gather(const int* table, PacketInt index) {
 #if defined(__AVX512F__)
   return __builtin_ia32_gathersiv16si(NativeInt{}, table, index, -1, 4);
-#elif defined(__AVX2__)
-  return __builtin_ia32_gathersiv8si(NativeInt{}, table, index, NativeInt{} - 1, 4);
 #else
   return gather_lanes<NativeInt>(table, index);
 #endif
@@ -147,7 +144,7 @@ struct Neighbours {
   F low, high;
 };
 inline Neighbours<float> neighbours_at(const float* table, int index) { return {table[index], table[index + 1]}; }
-// Both together, as one number of twice the size: a gather takes its time for each number, whatever its size.
+// Both together, as one number of twice the size: it is loaded in the same time.
 #if defined(__AVX512F__)
 inline Neighbours<PacketFloat> neighbours_at(const float* table, PacketInt at) {
   using Pairs = double __attribute__((vector_size(64)));
@@ -163,16 +160,15 @@ inline Neighbours<PacketFloat> neighbours_at(const float* table, PacketInt at) {
 #elif defined(__AVX2__)
 inline Neighbours<PacketFloat> neighbours_at(const float* table, PacketInt at) {
   using Pairs = double __attribute__((vector_size(32)));
-  const Pairs all = reinterpret_cast<Pairs>(NativeInt{} - 1);
-  const NativeInt index = at;
-  const auto pairs = [&](auto of) {
-    return reinterpret_cast<Native>(
-        __builtin_ia32_gathersiv4df(Pairs{}, reinterpret_cast<const double*>(table), of, all, 4));
+  const auto pair = [&](int lane) {
+    double both;
+    __builtin_memcpy(&both, table + at[lane], sizeof both);
+    return both;
   };
-  const Native a = pairs(__builtin_shufflevector(index, index, 0, 1, 2, 3)),
-               b = pairs(__builtin_shufflevector(index, index, 4, 5, 6, 7));
-  return {__builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14),
-          __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15)};
+  const Native a = reinterpret_cast<Native>(Pairs{pair(0), pair(1), pair(4), pair(5)}),
+               b = reinterpret_cast<Native>(Pairs{pair(2), pair(3), pair(6), pair(7)});
+  return {__builtin_shufflevector(a, b, 0, 2, 8, 10, 4, 6, 12, 14),
+          __builtin_shufflevector(a, b, 1, 3, 9, 11, 5, 7, 13, 15)};
 }
 #else
 inline Neighbours<PacketFloat> neighbours_at(const float* table, PacketInt index) {

@@ -107,15 +107,11 @@ struct FullSummerInRays {
   FullSums<PacketFloat>& out;
   template <int Exponent>
   void add(const float* group, int groups, int exponent) const {
-    Native sums[17];
-    sums_in_rays(
-        SourceList{group, groups}, p,
-        [&](Native share, Native radius, const Away& d, Native(&a)[17]) {
-          add_to_full<Exponent>(share, radius, exponent, d, a);
-          a[16] = larger(a[16], d.inverse);
-        },
-        sums);
-    nearest = larger(nearest, sums[16]);
+    using Sums = SumsInRays<SumsAllAround<Exponent>>;
+    Native sums[Sums::count];
+    const Native place[3] = {p[0], p[1], p[2]};
+    Sums(SourceList{group, groups}, place, {exponent}).find(sums);
+    nearest = larger(nearest, sums[Sums::nearest]);
     PacketFloat in_lanes[16];
     for (int i = 0; i < 16; ++i) in_lanes[i] = sums[i];
     add_full_list(static_cast<float>(Exponent > 0 ? Exponent : exponent), in_lanes, out);

@@ -66,8 +66,8 @@ struct OnRay {
   F at, slope;
 };
 inline Probe probe_of(const OnRay<float> (&p)[3]) {
-  return {Native{} + p[0].at,    Native{} + p[1].at,    Native{} + p[2].at,
-          Native{} + p[0].slope, Native{} + p[1].slope, Native{} + p[2].slope};
+  return {{Native{} + p[0].at, Native{} + p[1].at, Native{} + p[2].at},
+          {Native{} + p[0].slope, Native{} + p[1].slope, Native{} + p[2].slope}};
 }
 template <class Coefficients, class F>
 inline auto operator*(const Coefficients& c, const OnRay<F>& x) {

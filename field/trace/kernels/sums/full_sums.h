@@ -6,28 +6,39 @@ struct FullSums {
   F f{}, df[3]{}, g[3]{}, h[6]{}, second{}, third{};
 };
 
-// Adds sources to the sixteen sums that add_full_list() reads.
+// The sums that add_full_list() reads.
 template <int Exponent>
-inline void add_to_full(Native share, Native radius, int exponent, const Away& d, Native* a) {
-  const auto [w0, w2, k2, k4] = Terms<Exponent>(share, radius, exponent, d);
-  const Native kx = k4 * d.x, ky = k4 * d.y, kz = k4 * d.z;
-  a[0] += w0;
-  a[1] += w2 * d.x;
-  a[2] += w2 * d.y;
-  a[3] += w2 * d.z;
-  a[4] += k2;
-  a[5] += k2 * d.x;
-  a[6] += k2 * d.y;
-  a[7] += k2 * d.z;
-  a[8] += w2;
-  a[9] += k4;
-  a[10] += kx * d.x;
-  a[11] += ky * d.y;
-  a[12] += kz * d.z;
-  a[13] += kx * d.y;
-  a[14] += kx * d.z;
-  a[15] += ky * d.z;
-}
+struct SumsAllAround {
+  static constexpr int count = 16;
+  using Ready = FieldReady;
+
+  int exponent;
+
+  Ready ready(Native share, Native radius, const Away& d) const {
+    return {d, field_of<Exponent>(share, radius, d.inverse, exponent)};
+  }
+  template <class Into>
+  void add(const Ready& s, Native radius, const Into& into) const {
+    const auto [w2, k2, k4] = Terms(s, radius);
+    const Native kx = k4 * s.x, ky = k4 * s.y, kz = k4 * s.z;
+    into(0, s.field);
+    into(1, w2 * s.x);
+    into(2, w2 * s.y);
+    into(3, w2 * s.z);
+    into(4, k2);
+    into(5, k2 * s.x);
+    into(6, k2 * s.y);
+    into(7, k2 * s.z);
+    into(8, w2);
+    into(9, k4);
+    into(10, kx * s.x);
+    into(11, ky * s.y);
+    into(12, kz * s.z);
+    into(13, kx * s.y);
+    into(14, kx * s.z);
+    into(15, ky * s.z);
+  }
+};
 
 // Adds the sums of a list of exponent m.
 template <class F>
@@ -49,12 +60,8 @@ struct FullSummer {
   FullSums<float>& out;
   template <int Exponent>
   void add(const float* group, int groups, int exponent) const {
-    const V16 sums = sum_in_registers<16>(group, nearest, [&](const float* first, Native& close, auto& a) {
-      for_each_group(first, groups, p[0], p[1], p[2], [&](Native share, Native radius, const Away& d) {
-        add_to_full<Exponent>(share, radius, exponent, d, a);
-        close = larger(close, d.inverse);
-      });
-    });
+    const Native place[3] = {p[0] - Native{}, p[1] - Native{}, p[2] - Native{}};
+    const V16 sums = sum_groups(group, groups, place, SumsAllAround<Exponent>{exponent}, nearest);
     float s[16];
     __builtin_memcpy(s, &sums, sizeof s);
     add_full_list(static_cast<float>(Exponent > 0 ? Exponent : exponent), s, out);

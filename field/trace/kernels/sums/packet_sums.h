@@ -70,29 +70,23 @@ struct PacketSummer {
   V16 sums_of(int lane, const SourceList& sources, int exponent) const {
     // To subtract 0 changes nothing, so that no instruction does it.
     const auto all = [](float v) { return v - Native{}; };
-    const Probe probe{all(at[0][lane]),
-                      all(at[1][lane]),
-                      all(at[2][lane]),
-                      all(rays.direction[0][lane]),
-                      all(rays.direction[1][lane]),
-                      all(rays.direction[2][lane])};
+    const Probe probe{{all(at[0][lane]), all(at[1][lane]), all(at[2][lane])},
+                      {all(rays.direction[0][lane]), all(rays.direction[1][lane]), all(rays.direction[2][lane])}};
     V16 close{};
-    const V16 sums = sum_list<Exponent>(sources.groups, sources.count, exponent, probe, close);
+    const V16 sums =
+        sum_groups(sources.groups, sources.count, probe.place, SumsAlong<Exponent>{probe.direction, exponent}, close);
     return with_largest_last(sums, close);
   }
 
   template <int Exponent>
   void find_in_lanes(const SourceList& sources, int exponent, unsigned lanes_of, PacketFloat (&columns)[lanes]) const {
-    Native sums[12];
-    sums_in_rays(
-        sources, at,
-        [&](Native share, Native radius, const Away& d, Native(&a)[12]) {
-          add_sources<Exponent>(share, radius, exponent, d, rays.direction[0], rays.direction[1], rays.direction[2], a);
-        },
-        sums);
+    using Sums = SumsInRays<SumsAlong<Exponent>>;
+    const Probe probe{{at[0], at[1], at[2]}, {rays.direction[0], rays.direction[1], rays.direction[2]}};
+    Native sums[Sums::count];
+    Sums(sources, probe.place, {probe.direction, exponent}).find(sums);
     const PacketMask which = PacketMask(lanes_of);
-    for (int i = 0; i < 11; ++i) assign(which, columns[i], sums[i]);
-    assign(which, columns[lanes - 1], sums[11]);
+    for (int i = 0; i < Sums::nearest; ++i) assign(which, columns[i], sums[i]);
+    assign(which, columns[lanes - 1], sums[Sums::nearest]);
   }
 
   // A ray without a list of this exponent keeps its sums as they are.

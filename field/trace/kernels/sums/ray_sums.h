@@ -19,40 +19,40 @@ inline void assign(PacketMask mask, RaySums<PacketFloat>& to, const RaySums<Pack
 }
 
 struct Probe {
-  Native px, py, pz, ex, ey, ez;
+  Native place[3], direction[3];
 };
 
-// Adds sources to the twelve sums of RaySums along e; the last is their largest 1 / d^2.
+// The sums of RaySums along e, for add_list().
 template <int Exponent>
-inline void add_sources(Native share, Native radius, int exponent, const Away& d, Native ex, Native ey, Native ez,
-                        Native (&a)[12]) {
-  const auto [w0, w2, k2, k4] = Terms<Exponent>(share, radius, exponent, d);
-  const Native along = d.x * ex + d.y * ey + d.z * ez, ka = k4 * along;
-  a[0] += w0;
-  a[1] += w2 * along;
-  a[2] += w2;
-  a[3] += k2;
-  a[4] += k4;
-  a[5] += k2 * d.x;
-  a[6] += k2 * d.y;
-  a[7] += k2 * d.z;
-  a[8] += ka * d.x;
-  a[9] += ka * d.y;
-  a[10] += ka * d.z;
-  a[11] = larger(a[11], d.inverse);
-}
+struct SumsAlong {
+  static constexpr int count = 11;
+  struct Ready : FieldReady {
+    Native along;
+  };
 
-// The sums over one list for one ray; what they stand for is told by add_list().
-template <int Exponent>
-inline V16 sum_list(const float* first_group, int groups, int exponent, const Probe& probe, V16& nearest) {
-  return sum_in_registers<12>(first_group, nearest, [&](const float* first, Native& close, auto& a) {
-    for_each_group(first, groups, probe.px, probe.py, probe.pz, [&](Native share, Native radius, const Away& d) {
-      add_sources<Exponent>(share, radius, exponent, d, probe.ex, probe.ey, probe.ez, a);
-    });
-    close = larger(close, a[11]);
-    a[11] = Native{};
-  });
-}
+  const Native (&e)[3];
+  int exponent;
+
+  Ready ready(Native share, Native radius, const Away& d) const {
+    return {{d, field_of<Exponent>(share, radius, d.inverse, exponent)}, d.x * e[0] + d.y * e[1] + d.z * e[2]};
+  }
+  template <class Into>
+  void add(const Ready& s, Native radius, const Into& into) const {
+    const auto [w2, k2, k4] = Terms(s, radius);
+    into(0, s.field);
+    into(1, w2 * s.along);
+    into(2, w2);
+    into(3, k2);
+    into(5, k2 * s.x);
+    into(6, k2 * s.y);
+    into(7, k2 * s.z);
+    into(4, k4);
+    const Native ka = k4 * s.along;
+    into(8, ka * s.x);
+    into(9, ka * s.y);
+    into(10, ka * s.z);
+  }
+};
 
 // Adds the sums of a list of exponent m; e is the direction of the ray.
 template <class F>
@@ -75,7 +75,7 @@ struct RaySummer {
   RaySums<float>& out;
   template <int Exponent>
   void add(const float* group, int groups, int exponent) const {
-    const V16 sums = sum_list<Exponent>(group, groups, exponent, probe, nearest);
+    const V16 sums = sum_groups(group, groups, probe.place, SumsAlong<Exponent>{probe.direction, exponent}, nearest);
     float s[16];
     __builtin_memcpy(s, &sums, sizeof s);
     add_list(static_cast<float>(Exponent > 0 ? Exponent : exponent), s, ray.direction, out);

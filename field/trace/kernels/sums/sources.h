@@ -1,29 +1,5 @@
 // Through the sources of one level, sixteen at a time. Part of block_kernels_<set>.cpp.
 
-// As many sums, 12 or 16, over sources in lanes, one register of lanes after the other, so that accumulators stay in
-// registers: add(group, nearest, a) adds the sources in the first of the lanes, and raises `nearest`.
-template <int Count, class Add>
-inline V16 sum_in_registers(const float* group, V16& nearest, const Add& add) {
-  Native a[natives][Count], close[natives];
-  split(nearest, close);
-  for (int part = 0; part < natives; ++part) {
-    Native of_part[Count];
-#pragma GCC unroll 16
-    for (int i = 0; i < Count; ++i) of_part[i] = Native{};
-    add(group + part * native_lanes, close[part], of_part);
-#pragma GCC unroll 16
-    for (int i = 0; i < Count; ++i) a[part][i] = of_part[i];
-  }
-  nearest = joined(close);
-  V16 whole[Count];
-  for (int i = 0; i < Count; ++i) {
-    Native parts[natives];
-    for (int part = 0; part < natives; ++part) parts[part] = a[part][i];
-    whole[i] = joined(parts);
-  }
-  return lane_sums(whole);
-}
-
 // Lane by lane, from a source to a place.
 struct Away {
   Native x, y, z, inverse;  // and 1 / d^2
@@ -31,41 +7,100 @@ struct Away {
   Away(Native dx, Native dy, Native dz) : x(dx), y(dy), z(dz) { inverse = 1.0F / (x * x + y * y + z * z); }
 };
 
-// add(at, away) for `count` sources or groups of them, `stride` floats apart, with away(at). The division for the next
-// one is under way while one is added: processors do not look as far ahead by themselves.
-template <class AwayOf, class Add>
-inline void for_each_source(const float* at, int count, int stride, const AwayOf& away, const Add& add) {
-  if (count == 0) return;
-  Away here = away(at);
-  for (int k = 1; k < count; ++k, at += stride) {
-    const Away next = away(at + stride);
-    add(at, here);
+// What is asked of all sources of a list is a kind of sums: how many there are (`count`), what of a source is made
+// ready before it is added (`Ready`, an Away and what else takes long), and ready(share, radius, away) and add(ready,
+// radius, into), which calls into(i, term) for each sum. Of every kind the largest 1 / d^2 is found, too.
+
+// Calls begin(at, ready) for the first of `count` sources or groups of them, and add(at, ready) for the others, with
+// ready(at); they are `stride` floats apart, and there is at least one. Processors do not look far enough ahead by
+// themselves to be busy while they divide. With 32 registers the next source is made ready while one is added; with 16,
+// which the sums need for themselves, some are before any is added.
+template <class Ready, class Make, class Begin, class Add>
+inline void for_each_source(const float* at, int count, int stride, const Make& ready, const Begin& begin,
+                            const Add& add) {
+#if defined(__AVX512F__)
+  Ready here = ready(at);
+  const auto take = [&](const auto& put) {
+    at += stride;
+    const Ready next = ready(at);
+    put(at - stride, here);
     here = next;
-  }
+  };
+  if (count == 1) return begin(at, here);
+  take(begin);
+  for (int k = 2; k < count; ++k) take(add);
   add(at, here);
+#else
+  constexpr int most = 16;
+  alignas(Ready) char memory[most * sizeof(Ready)];
+  Ready* const made = reinterpret_cast<Ready*>(memory);
+  const auto make = [&] {
+    const int now = count < most ? count : most;
+    const float* next = at;
+    for (int k = 0; k < now; ++k, next += stride) made[k] = ready(next);
+    count -= now;
+    return now;
+  };
+  int now = make();
+  begin(at, made[0]);
+  at += stride;
+  for (int k = 1; k < now; ++k, at += stride) add(at, made[k]);
+  while (count > 0) {
+    now = make();
+    for (int k = 0; k < now; ++k, at += stride) add(at, made[k]);
+  }
+#endif
 }
 
-// What sources of this share and radius have there: w d^-m and w d^-(m+2), w tau d^-(m+2) and w tau d^-(m+4).
-template <int Exponent>
-struct Terms {
-  Native w0, w2, k2, k4;
+// The sums of a kind over groups of sources for one place, as their lanes were added by lane_sums(): one register of
+// lanes after the other, so that they stay in registers. `nearest` is raised to the largest 1 / d^2, lane by lane.
+template <class Kind>
+inline V16 sum_groups(const float* group, int groups, const Native (&place)[3], const Kind& kind, V16& nearest) {
+  constexpr int count = Kind::count > 12 ? 16 : 12;
+  Native a[natives][count], close[natives];
+  split(nearest, close);
+  for (int part = 0; part < natives; ++part) {
+    Native of_part[count], closest = close[part];
+#pragma GCC unroll 16
+    for (int i = Kind::count; i < count; ++i) of_part[i] = Native{};
+    const auto put = [&](const typename Kind::Ready& source, const float* at, const auto& into) {
+      kind.add(source, load_native(at + 64), into);
+      closest = larger(closest, source.inverse);
+    };
+    for_each_source<typename Kind::Ready>(
+        group + part * native_lanes, groups, floats_per_group,
+        [&](const float* at) {
+          return kind.ready(
+              load_native(at + 48), load_native(at + 64),
+              Away(place[0] - load_native(at), place[1] - load_native(at + 16), place[2] - load_native(at + 32)));
+        },
+        [&](const float* at, const auto& source) { put(source, at, [&](int i, Native term) { of_part[i] = term; }); },
+        [&](const float* at, const auto& source) { put(source, at, [&](int i, Native term) { of_part[i] += term; }); });
+    close[part] = closest;
+#pragma GCC unroll 16
+    for (int i = 0; i < count; ++i) a[part][i] = of_part[i];
+  }
+  nearest = joined(close);
+  V16 whole[count];
+  for (int i = 0; i < count; ++i) {
+    Native parts[natives];
+    for (int part = 0; part < natives; ++part) parts[part] = a[part][i];
+    whole[i] = joined(parts);
+  }
+  return lane_sums(whole);
+}
 
-  Terms(Native share, Native radius, int exponent, const Away& d)
-      : w0(field_of<Exponent>(share, radius, d.inverse, exponent)),
-        w2(w0 * d.inverse),
-        k2(w2 * radius),
-        k4(k2 * d.inverse) {}
+// The field of sources at a place, made ready: their way to it and w d^-m.
+struct FieldReady : Away {
+  Native field;
 };
 
-// for_each_source() of groups, sources in lanes: add(share, radius, away). The place: floats, or the same in all lanes.
-template <class Place, class Add>
-inline void for_each_group(const float* first, int groups, Place px, Place py, Place pz, const Add& add) {
-  const auto away = [&](const float* group) {
-    return Away(px - load_native(group), py - load_native(group + 16), pz - load_native(group + 32));
-  };
-  for_each_source(first, groups, floats_per_group, away,
-                  [&](const float* group, const Away& d) { add(load_native(group + 48), load_native(group + 64), d); });
-}
+// What they add with this radius: w d^-(m+2), w tau d^-(m+2) and w tau d^-(m+4).
+struct Terms {
+  Native w2, k2, k4;
+
+  Terms(const FieldReady& s, Native radius) : w2(s.field * s.inverse), k2(w2 * radius), k4(k2 * s.inverse) {}
+};
 
 inline const float* point_sources(const FieldLevel& l) {
   return l.sources + static_cast<long>(l.curve_groups) * floats_per_group;
