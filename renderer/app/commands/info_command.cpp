@@ -126,7 +126,7 @@ std::string object_text(const Json& object) {
     for (const Json& part : object["general_tracer"])
       text += fmt::format("\n  {:<12} {} of its parts in the general tracer, which is slower: {}", "",
                           part["parts"].get<std::size_t>(), part["because"].get<std::string>());
-  if (object.contains("triangles")) text += fmt::format(", {} triangles", object["triangles"].get<std::size_t>());
+  if (object.contains("triangles")) text += ", " + counted(object["triangles"], "triangle");
   return text + '\n';
 }
 
