@@ -3,9 +3,8 @@
 
 // Counted in registers of sources: those of a place take some four more, to be added up over lanes, and places in lanes
 // take one for each source, and four. Where a group is several registers it is six more, 18 for a group's sources, and
-// 24: then it pays only for short lists. (AVX2 on a processor without
-// AVX-512, degree 4: lists of 1, 2, 8 and 15 groups take 33, 43, 91 and 156 ns a place, 198, 355, 830 and 1420 ns in
-// lanes, for eight places.)
+// 24: then lanes pay only for short lists. (AVX2 on a processor without AVX-512, degree 4: lists of 1, 2, 8 and 15
+// groups take 33, 43, 91 and 156 ns a place, 198, 355, 830 and 1420 ns in lanes, for eight places.)
 inline bool is_faster_in_lanes(const SourceList& sources, int places) {
   if constexpr (natives == 1) return places * (sources.count + 4) > lanes * sources.count + 4;
   else return places * (natives * sources.count + 6) > 18 * sources.count + 24;
