@@ -1,5 +1,6 @@
 // Arcs, and triangles of more than one radius, under the Cauchy kernel by panels, under the compact one by adaptive
 // quadrature.
+#include "field/skeleton/compact_taper.h"
 #include "field/skeleton/skeletons.h"
 #include "field/skeleton/surface_integral.h"
 #include "field/skeleton/triangle_methods.h"
@@ -15,8 +16,6 @@ SkeletonSample arc_field(const ArcSkeleton& arc, const Vec3d& p, const Kernel& k
       });
 }
 
-// The compact kernel of degree 2 has a slope of -1/R^2 up to its edge and none beyond, so that the integral of grad_S
-// changes with p by what the moving edge takes in, too: grad_S there times -dt/dp = 2 v / |dE/dt|.
 template <Derivatives Order>
 SkeletonSample triangle_by_lines(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
   const Profile profile(kernel, 2);
@@ -28,17 +27,17 @@ SkeletonSample triangle_by_lines(const TriangleSkeleton& triangle, const Vec3d& 
         add_source<Order>(profile, v, tau, weight / (profile.normalisation() * tau * tau), sum);
       },
       [&](const Vec3d& v, double tau, double weight, SkeletonSample& sum) {
-        if (!has_steep_edge) return;
-        const double slope = -1 / (kernel.shape * kernel.shape);
-        const double k = 2 * weight * slope / (profile.normalisation() * tau * tau * tau);
-        sum.si_jacobian += Matrix3::outer(v, v) * (-2 * k);
+        if (has_steep_edge) add_steep_edge(profile, kernel.shape, v, tau, weight, sum);
       });
 }
 
 template <Derivatives Order>
 SkeletonSample triangle_field(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
   const auto by_sides = triangle_by_sides<Order>(triangle, p, kernel);
-  return by_sides ? *by_sides : triangle_by_lines<Order>(triangle, p, kernel);
+  if (by_sides) return *by_sides;
+  const bool is_even = triangle.radii[0] == triangle.radii[1] && triangle.radii[1] == triangle.radii[2];
+  if (kernel.family == KernelFamily::Compact && !is_even) return compact_taper_field<Order>(triangle, p, kernel);
+  return triangle_by_lines<Order>(triangle, p, kernel);
 }
 
 template SkeletonSample triangle_by_lines<Derivatives::Second>(const TriangleSkeleton&, const Vec3d&, const Kernel&);

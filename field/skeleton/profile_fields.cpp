@@ -1,4 +1,5 @@
 // Points and segments under the Cauchy and the compact kernel; shares of segments under any.
+#include "field/skeleton/compact_chord.h"
 #include "field/skeleton/seen_line.h"
 #include "field/skeleton/shares.h"
 #include "field/skeleton/skeletons.h"
@@ -18,6 +19,10 @@ SkeletonSample segment_field(const SegmentSkeleton& segment, const Vec3d& p, con
   SkeletonSample sum;
   if (segment.from == segment.to) return sum;
   const auto [length, foot, u, across, line] = seen_from(segment, p);
+  if (kernel.family == KernelFamily::Compact && line.slope == 0) {
+    CompactChords(kernel, 1).add<Order>(line, across, u, 1 / line.at_foot, sum);
+    return sum;
+  }
   const Profile profile(kernel, 1);
   integrate_line(line, kernel, 1, [&](double t, double weight) {
     const double tau = segment.radius_from + line.slope * (t + foot);

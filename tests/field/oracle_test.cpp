@@ -12,6 +12,8 @@
 
 #include "field/blend/angle/contact.h"
 #include "field/blend/correction/correction.h"
+#include "field/skeleton/parts.h"
+#include "field/skeleton/radii.h"
 #include "field/skeleton/skeletons.h"
 #include "tests/field/oracle_operator.h"
 #include "tests/field/random.h"
@@ -135,6 +137,62 @@ TEST(Oracle, Segments) {
     const SegmentSkeleton s = random.segment();
     return Scene<SegmentSkeleton>{s, s.to, normalize(s.to - s.from).vec()};
   });
+}
+
+// A radius that grows by 1/R of the length, or 1e-16 to 0.1 of that more or less: then one of the ends of the support
+// is far away, or there is only one. Skeletons down to a millionth of their radius, too, which the support holds whole.
+struct SteepRadius {
+  double length, from, to;
+
+  SteepRadius(Random& random, double R, int i) {
+    const double off = i % 5 == 0 ? 0 : pow(10.0, random.between(-16, -1));
+    from = random.between(0.1, 0.8);
+    length = i % 4 == 0 ? from * pow(10.0, random.between(-3, 0)) : random.between(0.3, 2);
+    to = from + length / R * (i % 2 == 0 ? 1 + off : 1 - off);
+    if (i % 3 == 0) std::swap(from, to);
+  }
+};
+template <class Skeleton>
+double error_under_compact_kernel(const Skeleton& s, const Vec3d& p, const Kernel& kernel, int& checked) {
+  const Oracle exact = test::oracle::field<Real>(s, p, kernel);
+  if (exact.value < 1e-6 * std::min(1.0, measure(s) / least_radius(s))) return 0;
+  const SkeletonSample sample = sample_of(s, p, kernel);
+  ++checked;
+  return std::max({error_of(sample.value, exact.value), error_of(sample.gradient, exact.gradient),
+                   error_of(sample.si_gradient, exact.si)});
+}
+TEST(Oracle, SegmentsWhoseRadiusGrowsAsFastAsTheSupport) {
+  Random random(807);
+  Worst worst;
+  int checked = 0;
+  for (int i = 0; i < 240; ++i) {
+    const Kernel kernel = kernel_of(random, KernelFamily::Compact, 9);
+    const auto [length, from, to] = SteepRadius(random, kernel.shape, i);
+    const Vec3d begin = random.vector(0.5), u = normalize(random.vector(1)).vec();
+    const SegmentSkeleton s{begin, begin + u * length, from, to};
+    const Vec3d aside = normalize(cross(u, random.vector(1))).vec();
+    const Vec3d p = begin + u * random.between(-0.5, length + 0.5) + aside * (to * kernel.shape * random.between(0, 1));
+    const double error = error_under_compact_kernel(s, p, kernel, checked);
+    EXPECT_LE(error, 1e-12) << "seed 807 round " << i << ", degree " << kernel.degree << " support " << kernel.shape;
+    worst.add("steep segment", error);
+  }
+  EXPECT_GT(checked, 120);
+}
+TEST(Oracle, TrianglesWhoseRadiusGrowsAsFastAsTheSupport) {
+  Random random(808);
+  Worst worst;
+  int checked = 0;
+  for (int i = 0; i < 30; ++i) {
+    const Kernel kernel = kernel_of(random, KernelFamily::Compact, 7);
+    const auto [length, from, to] = SteepRadius(random, kernel.shape, i % 4 == 0 ? i + 1 : i);
+    const TriangleSkeleton s{{Vec3d{0, 0, 0}, Vec3d{length, 0, 0}, Vec3d{random.between(0, length), 1, 0}},
+                             {from, to, i % 2 == 0 ? from : random.between(0.1, 0.8)}};
+    const Vec3d p{random.between(-0.2, length + 0.2), random.between(-0.2, 0.8), random.between(0, 1) * to};
+    const double error = error_under_compact_kernel(s, p, kernel, checked);
+    EXPECT_LE(error, 1e-12) << "seed 808 round " << i << ", degree " << kernel.degree << " support " << kernel.shape;
+    worst.add("steep triangle", error);
+  }
+  EXPECT_GT(checked, 15);
 }
 TEST(Oracle, Arcs) {
   expect_exact("arc", 803, 60, 2e-13, 1e-12, [](Random& random) {
