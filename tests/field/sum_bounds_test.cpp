@@ -100,9 +100,9 @@ Told check_sums(const std::function<BlendField(Random&)>& draw, unsigned seed, i
   return told;
 }
 
-BlendField compact_blend(Random& random, int least_degree) {
+BlendField compact_blend(Random& random, int most_degree = 9) {
   BlendField blend;
-  blend.degree = random.whole(least_degree, 9);
+  blend.degree = random.whole(3, most_degree);
   blend.kernel = KernelFamily::Compact;
   blend.kernel_shape = random.between(1.2, 3);
   return blend;
@@ -128,7 +128,7 @@ TEST(SumBounds, HoldForPointsAndSegmentsOfEndlessKernels) {
 
 TEST(SumBounds, HoldForTaperedSegmentsOfCompactSupport) {
   const auto draw = [](Random& random) {
-    BlendField blend = compact_blend(random, 3);
+    BlendField blend = compact_blend(random);
     SegmentSkeleton s = random.segment();
     s.radius_to = wider(random, s.radius_from);
     blend.segments.add(s, {});
@@ -141,7 +141,7 @@ TEST(SumBounds, HoldForTaperedSegmentsOfCompactSupport) {
 
 TEST(SumBounds, HoldForTaperedArcsOfCompactSupport) {
   const auto draw = [](Random& random) {
-    BlendField blend = compact_blend(random, 3);
+    BlendField blend = compact_blend(random);
     ArcSkeleton s = random.arc();
     s.radius_to = wider(random, s.radius_from);
     blend.arcs.add(s, {});
@@ -154,7 +154,7 @@ TEST(SumBounds, HoldForTaperedArcsOfCompactSupport) {
 
 TEST(SumBounds, HoldForTaperedTrianglesOfCompactSupport) {
   const auto draw = [](Random& random) {
-    BlendField blend = compact_blend(random, 4);
+    BlendField blend = compact_blend(random);
     TriangleSkeleton s = random.triangle();
     for (const std::size_t k : {1u, 2u}) s.radii[k] = wider(random, s.radii[0]);
     blend.triangles.add(s, {});
@@ -163,6 +163,43 @@ TEST(SumBounds, HoldForTaperedTrianglesOfCompactSupport) {
   const Told told = check_sums(draw, 63, 400, 1e-8);
   EXPECT_GT(told.gradients, 2000);
   EXPECT_GT(told.Js, 3000);
+}
+
+// Its second derivatives grow without bound towards the edge of the support, or have a jump there.
+TEST(SumBounds, HoldForTheCompactKernelsOfTheLowestDegrees) {
+  const auto draw = [](Random& random) {
+    BlendField blend = compact_blend(random, 4);
+    const auto other = [&](double radius) { return random.between(0, 1) < 0.5 ? radius : wider(random, radius); };
+    const int kind = random.whole(0, 2);
+    if (kind == 0) {
+      ArcSkeleton s = random.arc();
+      s.radius_to = other(s.radius_from);
+      blend.arcs.add(s, {});
+    } else if (kind == 1) {
+      SegmentSkeleton s = random.segment();
+      s.radius_to = other(s.radius_from);
+      blend.segments.add(s, {});
+    } else {
+      TriangleSkeleton s = random.triangle();
+      for (const std::size_t k : {1u, 2u}) s.radii[k] = other(s.radii[0]);
+      blend.triangles.add(s, {});
+    }
+    return blend;
+  };
+  const Told told = check_sums(draw, 64, 1500, 1e-8);
+  EXPECT_GT(told.gradients, 5000);
+}
+
+// Parts of an arc may have bounds of their second derivatives where all of it has none, because its radius grows.
+TEST(SumBounds, TellNothingOfAnArcThatItsPartsDoNot) {
+  const auto draw = [](Random& random) {
+    BlendField blend = compact_blend(random, 3);
+    ArcSkeleton s{.center = {}, .major = 2, .begin = 0, .end = 3.4, .radius_from = 0.4};
+    s.radius_to = random.between(1.5, 3);
+    blend.arcs.add(s, {});
+    return blend;
+  };
+  check_sums(draw, 65, 800, 1e-8);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "field/blend/bounds/sum/compact_steepness.h"
+#include "field/blend/bounds/sum/edge_bend.h"
 #include "field/blend/bounds/sum/sum_bounds.h"
 #include "field/blend/bounds/sum/support_share.h"
 #include "field/skeleton/distance.h"
@@ -16,22 +17,6 @@ namespace marrow {
 namespace {
 
 constexpr double inf = Box3::inf;
-
-// The second derivatives of the kernel times what the support holds of a skeleton. For m = 3 they are at most
-// 3/R^2 (1-y)^(-1/2), and along a segment R^2 r^2 (1-y) is a parabola, so that the integral from root to root is
-// finite: that of R r / sqrt(Q), Q = (1 - R^2 r'^2) (L^2 - s^2), is at most pi R r / sqrt(1 - R^2 r'^2).
-double held_bend(const Profile& profile, const Kernel&, const CompactSteepness& steepness, const auto&, double held) {
-  return profile.degree() < 4 ? inf : steepness.second() * held;
-}
-double held_bend(const Profile& profile, const Kernel& kernel, const CompactSteepness& steepness,
-                 const SegmentSkeleton& s, double held) {
-  if (profile.degree() != 3) return profile.degree() < 4 ? inf : steepness.second() * held;
-  const double R = kernel.shape, slope = (s.radius_to - s.radius_from) / length(s.to - s.from);
-  const double open = 1 - square(R * slope);
-  if (!(open > 0)) return inf;
-  const double chord = 3.1415927 * R * largest_radius(s) / (least_radius(s) * std::sqrt(open));
-  return 3 / (R * R) / profile.normalisation() * chord * (1 + 1e-9);
-}
 
 // How far first derivatives of the kernel change over a scaled step, at most, where m = 3: they are 3/R^2 x sqrt(1-y),
 // and roots of numbers that differ by d differ by sqrt(d).
@@ -48,13 +33,12 @@ struct BendChanges {
   double in_all() const { return even + sudden; }
 };
 
-// Of the kernel over a scaled step, of what either support `held` and where `crossed` of it comes in or goes: with w =
-// 1 - y its second derivatives are -a w^(h-1) + b w^(h-2) v v^T, a = 2h/R^2, b = 4h(h-1)/R^4, h = m/2. Over the step w
-// changes by 2 step / R; for h = 5/2 its root by the root of that, and for h = 2 w^0 by 1 at the edge.
+// Of a kernel with m >= 4 over a scaled step, of what either support `held` and where `crossed` of it comes in or goes:
+// with w = 1 - y its second derivatives are -a w^(h-1) + b w^(h-2) v v^T, a = 2h/R^2, b = 4h(h-1)/R^4, h = m/2. Over
+// the step w changes by 2 step / R; for h = 5/2 its root by the root of that, and for h = 2 w^0 by 1 at the edge.
 BendChanges bend_changes(const Profile& profile, const Kernel& kernel, const CompactSteepness& steepness, double step,
                          double held, double crossed) {
   const double R = kernel.shape, h = 0.5 * profile.degree(), by = 2 * step / R;
-  if (h < 2 || crossed == inf) return {0, inf};
   if (h >= 3) return {steepness.third() * step * held};
   const double a = 2 * h / (R * R), b = 4 * h * (h - 1) / (R * R * R * R), scale = (1 + 1e-9) / profile.normalisation();
   const double at_edge = h > 2 ? held * std::sqrt(by) : crossed;
@@ -145,19 +129,21 @@ Changes changes_of(const auto& s, const Asked& asked) {
   const double reach = kernel.shape * largest_radius(s), least = least_radius(s), largest = largest_radius(s);
   const double near = std::max(0.0, distance_to(s, center) * (1 - 1e-9) - rho);
   const CompactSteepness steepness(profile, kernel.shape, std::max(0.0, 1 - square(near / reach)));
-  const double held = held_of(s, reach, near), bend = held_bend(profile, kernel, steepness, s, held);
+  const double held = held_of(s, reach, near);
   Changes c{.steepest = steepness.first() * held / least,
-            .bent = bend / (least * least),
-            .S = most_changed(profile, kernel, rho / least) * held * (largest / least),
+            .bent = profile.degree() < 4 ? edge_bend(s, profile, kernel.shape, center, rho)
+                                         : steepness.second() * held / (least * least),
+            .J = inf,
+            .S = most_changed(profile, kernel, rho / least) * held_of(s, reach + rho, near) * (largest / least),
+            .S_beyond_J = inf,
             .radius = largest};
-  if (bend < inf) {
-    const bool is_steady = profile.degree() >= 6;  // its second derivatives do not jump at the edge, nor bend there
-    const double crossed = is_steady ? 0 : share_crossing(s, center, across, kernel.shape, is_along);
-    const BendChanges changes =
-        bend_changes(profile, kernel, steepness, across / least, held_of(s, reach + across, near), crossed);
-    c.J = changes.in_all() / least;
-    c.S_beyond_J = (0.5 * changes.even + changes.sudden) / least * across;
-  }
+  if (profile.degree() < 4) return c;
+  const bool is_steady = profile.degree() >= 6;  // its second derivatives do not jump at the edge, nor bend there
+  const double crossed = is_steady ? 0 : share_crossing(s, center, across, kernel.shape, is_along);
+  const BendChanges changes =
+      bend_changes(profile, kernel, steepness, across / least, held_of(s, reach + across, near), crossed);
+  c.J = changes.in_all() / least;
+  c.S_beyond_J = (0.5 * changes.even + changes.sudden) / least * across;
   return c;
 }
 

@@ -15,6 +15,9 @@
 namespace marrow {
 namespace {
 
+// Of 1 - (R slope)^2: below that rounding may decide.
+constexpr double least_open = 1e-7;
+
 // By which distances may differ from the middle.
 double slack_of(const auto& s, double rho) { return rho * (1 + 1e-9) + 1e-9 * least_radius(s); }
 
@@ -42,7 +45,7 @@ double share_crossing(const PointSkeleton& s, const Vec3d& p, double rho, double
 double share_crossing(const SegmentSkeleton& s, const Vec3d& p, double rho, double R, bool anywhere) {
   const double along = length(s.to - s.from), slope = (s.radius_to - s.radius_from) / along;
   const double open = 1 - square(R * slope);
-  if (!(open > 0)) return along / least_radius(s);
+  if (!(open > least_open)) return along / least_radius(s);
   const Vec3d u = (s.to - s.from) / along, from_start = p - s.from;
   const double foot = dot(from_start, u), h_squared = length_squared(from_start - u * foot);
   const auto chord = [&](double by) {
@@ -95,7 +98,7 @@ double share_crossing(const TriangleSkeleton& s, const Vec3d& p, double rho, dou
   const double open = 1 - R * R * length_squared(rise), slack = slack_of(s, rho);
   const double h2 = square(dot(from_corner, corners.normal)) / corners.area2;
   const double whole = measure(s) / square(least_radius(s));
-  if (!(open > 0)) return whole;
+  if (!(open > least_open)) return whole;
   const auto area = [&](double by) {
     const double c = R * (s.radii[0] + dot(from_corner, rise)) + by;
     return c > 0 ? std::numbers::pi * std::max(0.0, square(c) / open - h2) / std::sqrt(open) : 0;
