@@ -85,6 +85,7 @@ void moving(const X& a, const X& b, const Nodes& nodes, const At& at) {
     nodes(at);
   } else {
     const double begin = value_of(a), width = value_of(b) - begin;
+    if (!(width > 0)) return;
     const X across = b - a;
     nodes([&](double x, double weight) { at(a + across * ((x - begin) / width), across * (weight / width)); });
   }
