@@ -134,7 +134,7 @@ TEST(SumBounds, HoldForTaperedSegmentsOfCompactSupport) {
     blend.segments.add(s, {});
     return blend;
   };
-  const Told told = check_sums(draw, 61, 1500, 1e-8);
+  const Told told = check_sums(draw, 61, 6000, 1e-8);
   EXPECT_GT(told.gradients, 8000);
   EXPECT_GT(told.Js, 15000);
 }

@@ -130,14 +130,16 @@ Changes changes_of(const auto& s, const Asked& asked) {
   const double near = std::max(0.0, distance_to(s, center) * (1 - 1e-9) - rho);
   const CompactSteepness steepness(profile, kernel.shape, std::max(0.0, 1 - square(near / reach)));
   const double held = held_of(s, reach, near);
-  Changes c{.steepest = steepness.first() * held / least,
-            .bent = profile.degree() < 4 ? edge_bend(s, profile, kernel.shape, center, rho)
-                                         : steepness.second() * held / (least * least),
-            .J = inf,
-            .S = most_changed(profile, kernel, rho / least) * held_of(s, reach + rho, near) * (largest / least),
-            .S_beyond_J = inf,
-            .radius = largest};
-  if (profile.degree() < 4) return c;
+  const bool edge = profile.degree() < 4;
+  Changes c{
+      .steepest = steepness.first() * held / least,
+      .bent = edge ? edge_bend(s, profile, kernel.shape, center, rho) : steepness.second() * held / (least * least),
+      .J = edge ? edge_bend_change(s, profile, kernel.shape, center, across) : inf,
+      .S = most_changed(profile, kernel, rho / least) * held_of(s, reach + rho, near) * (largest / least),
+      .S_beyond_J = inf,
+      .radius = largest};
+  if (edge && c.J < inf) c.S_beyond_J = c.J * across;
+  if (edge) return c;
   const bool is_steady = profile.degree() >= 6;  // its second derivatives do not jump at the edge, nor bend there
   const double crossed = is_steady ? 0 : share_crossing(s, center, across, kernel.shape, is_along);
   const BendChanges changes =

@@ -96,6 +96,25 @@ double integral_along(const ArcSkeleton& s, double R, const Vec3d& p, double rho
   return s.major * integral;
 }
 
+// Along a segment 1 / sqrt(Q) is the density of the arcsine law on an interval of 2 l, over sqrt(1 - (R tau')^2), and
+// of mass pi. If one end of such an interval moves in or out by a share e of the longer one, densities differ by 4
+// asin(sqrt(e)) in all. Here: both ends, as from p to places within `step`.
+double roots_moved(const SegmentSkeleton& s, double R, const Vec3d& p, double step) {
+  constexpr double all = 2 * pi;
+  const double along = length(s.to - s.from), slope = (s.radius_to - s.radius_from) / along;
+  const double open = 1 - square(R * slope);
+  const Vec3d u = (s.to - s.from) / along, from_start = p - s.from;
+  const double foot = dot(from_start, u), at_foot = s.radius_from + slope * foot;
+  const double l2 = (square(R * at_foot) - open * length_squared(from_start - u * foot)) / square(open);
+  if (!(l2 > 0)) return all;
+  // Within 2 l of the middle, which holds the roots of Q + by.
+  const double l = std::sqrt(l2), reach = R * (at_foot / open + 2 * std::fabs(slope) * l);
+  const double by = step * (2 * reach + 3 * step) * more / (open * l2);
+  if (!(by < 1)) return all;
+  const double inward = by / (1 + std::sqrt(1 - by));
+  return std::min(all, 8 * asin(std::sqrt(std::min(1.0, inward / (2 - inward)))));
+}
+
 // What of a triangle the support may reach from a place in the ball: radii from `thin` to `thick`, `width` across the
 // lines along which the radius stays as it is; of one radius, across the longest side.
 struct Strip {
@@ -154,6 +173,17 @@ double edge_bend(const TriangleSkeleton& s, const Profile& profile, double R, co
   const double held = share_within(s, R * strip.thick) * square(least_radius(s));
   const double even = 2 / (R * R) * held / square(thin2), at_edge = 4 * if_bent(2 * strip.open) / thin2;
   return (even + at_edge) / profile.normalisation() * more;
+}
+
+// Second derivatives of the kernel are -a w^(1/2) + b w^(-1/2) v v^T, a = 3/R^2, b = 3/R^4, v the scaled way.
+double edge_bend_change(const SegmentSkeleton& s, const Profile& profile, double R, const Vec3d& p, double step) {
+  const double open = 1 - square(R * (s.radius_to - s.radius_from) / length(s.to - s.from));
+  if (!(open > 1e-5)) return inf;
+  const double moved = roots_moved(s, R, p, step), least = least_radius(s), far = step / least;
+  const double a = 3 / (R * R), b = a / (R * R), changed = far * (2 * R + far);  // of d^2, scaled
+  const double held = share_within(s, R * largest_radius(s) + step);
+  const double at_edge = b * R / std::sqrt(open) * (square(R + far) * moved + changed * pi);
+  return (at_edge + a * std::sqrt(changed) / R * held) / (profile.normalisation() * least) * more;
 }
 
 }  // namespace marrow

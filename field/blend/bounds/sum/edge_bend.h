@@ -4,6 +4,7 @@
 
 #include "field/description/field_node.h"
 #include "field/kernel/profile.h"
+#include "field/math/box3.h"
 
 namespace marrow {
 
@@ -15,5 +16,10 @@ double edge_bend(const PointSkeleton&, const Profile&, double R, const Vec3d& p,
 double edge_bend(const SegmentSkeleton&, const Profile&, double R, const Vec3d& p, double rho);
 double edge_bend(const ArcSkeleton&, const Profile&, double R, const Vec3d& p, double rho);
 double edge_bend(const TriangleSkeleton&, const Profile&, double R, const Vec3d& p, double rho);
+
+/// By how much d grad_S f / dp of a segment may differ between p and places within `step`, m = 3. Of others nothing is
+/// known: infinite.
+double edge_bend_change(const SegmentSkeleton&, const Profile&, double R, const Vec3d& p, double step);
+inline double edge_bend_change(const auto&, const Profile&, double, const Vec3d&, double) { return Box3::inf; }
 
 }  // namespace marrow
