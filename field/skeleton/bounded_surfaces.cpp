@@ -1,6 +1,6 @@
 // Arcs, and triangles of more than one radius, under the Cauchy kernel by panels, under the compact one by adaptive
 // quadrature.
-#include "field/skeleton/compact_taper.h"
+#include "field/skeleton/even_lines.h"
 #include "field/skeleton/skeletons.h"
 #include "field/skeleton/surface_integral.h"
 #include "field/skeleton/triangle_methods.h"
@@ -36,8 +36,9 @@ SkeletonSample triangle_field(const TriangleSkeleton& triangle, const Vec3d& p, 
   const auto by_sides = triangle_by_sides<Order>(triangle, p, kernel);
   if (by_sides) return *by_sides;
   const bool is_even = triangle.radii[0] == triangle.radii[1] && triangle.radii[1] == triangle.radii[2];
-  if (kernel.family == KernelFamily::Compact && !is_even) return compact_taper_field<Order>(triangle, p, kernel);
-  return triangle_by_lines<Order>(triangle, p, kernel);
+  const bool has_even_lines = !is_even && kernel.family != KernelFamily::Inverse;
+  return has_even_lines ? triangle_by_even_lines<Order>(triangle, p, kernel)
+                        : triangle_by_lines<Order>(triangle, p, kernel);
 }
 
 template SkeletonSample triangle_by_lines<Derivatives::Second>(const TriangleSkeleton&, const Vec3d&, const Kernel&);

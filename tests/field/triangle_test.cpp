@@ -7,6 +7,7 @@
 
 #include "field/kernel/inverse_family.h"
 #include "field/math/box3.h"
+#include "field/skeleton/even_lines.h"
 #include "field/skeleton/skeletons.h"
 #include "field/skeleton/triangle_methods.h"
 #include "tests/field/random.h"
@@ -164,6 +165,22 @@ TEST(Triangle, IsTheSameBySidesAndByLinesUnderAnyKernel) {
       compared.add(*sides, triangle_by_lines<second>(t, p, kernel));
     }
     expect_same(compared, 200, 1e-10);
+  }
+}
+
+// Those of one radius each, and those parallel to a side, of radii that vary.
+TEST(Triangle, IsTheSameByAnyLinesWhereRadiiVary) {
+  Random random(87);
+  for (const KernelFamily family : {KernelFamily::Compact, KernelFamily::Cauchy}) {
+    Comparison compared;
+    for (int i = 0; i < 400; ++i) {
+      const auto [t, p] = place_near_triangle(random, 2 * i);
+      const Kernel kernel{family, random.whole(min_kernel_degree, max_kernel_degree), random.between(1.2, 3)};
+      const auto lines = triangle_by_lines<second>(t, p, kernel);
+      if (lines.value < 1e-6) continue;
+      compared.add(lines, triangle_by_even_lines<second>(t, p, kernel));
+    }
+    expect_same(compared, 150, 1e-9);
   }
 }
 
