@@ -56,5 +56,24 @@ TEST(Contact, AtZeroAngleBallsJoinAtTheDistanceOfTheClosedForm) {
   }
 }
 
+// Kernels so wide that the angle at which two would join when they touch leaves nothing of one alone. Their surface may
+// lie a little inside.
+TEST(Contact, LeavesLoneSkeletonsOfWideKernelsSolid) {
+  for (const Kernel& kernel : {Kernel{KernelFamily::Compact, 4, 2.0000001}, Kernel{KernelFamily::Compact, 4, 2.5},
+                               Kernel{KernelFamily::Compact, 3, 1.7320509}, Kernel{KernelFamily::Compact, 5, 2.5},
+                               Kernel{KernelFamily::Cauchy, 4, 0.49999999}, Kernel{KernelFamily::Cauchy, 3, 0.5}}) {
+    BlendField blend;
+    blend.kernel = kernel.family;
+    blend.degree = kernel.degree;
+    blend.kernel_shape = kernel.shape;
+    blend.alpha = contact_alpha(kernel);
+    blend.points.add({{0, 0, 0}, 0.5}, {});
+    SCOPED_TRACE(kernel.shape);
+    EXPECT_FALSE(contact_is_exact(kernel));
+    for (const double x : {0.0, 0.2, 0.4, 0.48}) EXPECT_GT(corrected_value(blend, {x, 0, 0}), 1) << x;
+    EXPECT_LT(corrected_value(blend, {0.5001, 0, 0}), 1);
+  }
+}
+
 }  // namespace
 }  // namespace marrow
