@@ -83,20 +83,6 @@ void for_each_polynomial_node(double length, int degree, const Visit& visit) {
   else with(gauss_rule<12>);
 }
 
-/// Calls visit(x, weight) at the nodes of a rule for powers of sine and cosine, `power` in all, over [begin, begin +
-/// length], if a short one does: n nodes are off by (power length)^(2n) n!^4 / ((2n + 1) (2n)!^3) of the length, for 8
-/// of them 7e-16 at 3, for 12 of them 4e-17 at 8.
-template <class Visit>
-bool for_each_cosine_node(double begin, double length, int power, const Visit& visit) {
-  const auto with = [&](const auto& rule) {
-    for (std::size_t i = 0; i < rule.nodes.size(); ++i) visit(begin + length * rule.nodes[i], length * rule.weights[i]);
-  };
-  if (power * length <= 3) with(gauss_rule<8>);
-  else if (power * length <= 8) with(gauss_rule<12>);
-  else return false;
-  return true;
-}
-
 /// Calls visit(x, weight) at the nodes of the shortest rule that holds for an integrand with a polynomial factor of
 /// the given degree.
 template <class Visit>

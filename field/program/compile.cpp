@@ -139,10 +139,11 @@ class Compiler {
     field.degree = blend.kernel.degree;
     field.kernel = blend.kernel.family;
     field.kernel_shape = blend.kernel.shape;
-    field.alpha = std::visit(
-        Overloaded{[](AlphaSum) { return std::numbers::pi / 2; }, [](double radians) { return radians; },
-                   [](const AlphaDirection& d) { return d.most; }, [&](const auto&) { return contact_.of(blend); }},
-        blend.alpha);
+    field.alpha =
+        std::visit(Overloaded{[](AlphaSum) { return std::numbers::pi / 2; }, [](double radians) { return radians; },
+                              [](const AlphaDirection& d) { return d.most; },
+                              [&](const auto&) { return contact_.of(blend).alpha; }},
+                   blend.alpha);
     field.alpha_per_skeleton =
         std::holds_alternative<AlphaPerSkeleton>(blend.alpha) || std::holds_alternative<AlphaAttribute>(blend.alpha);
     if (const auto* rule = std::get_if<AlphaLocalContact>(&blend.alpha))
@@ -168,9 +169,9 @@ class Compiler {
         blend.kernel.family == KernelFamily::Cauchy ? "a larger `scale`" : "a smaller `support`";
     if (!correction.bounded()->solid_alone())
       warn(node, "skeletons of this kernel are hollow with this alpha", "use " + narrower + ", or a larger alpha");
-    else if (std::holds_alternative<AlphaContact>(blend.alpha) &&
-             !contact_is_exact(blend.kernel, blend.cavity, blend.projection))
-      warn(node, "skeletons of this kernel join before they touch, whatever alpha", "use " + narrower);
+    else if (std::holds_alternative<AlphaContact>(blend.alpha) && !contact_.of(blend).is_exact)
+      warn(node, "skeletons of this kernel join before they touch, or would be hollow, whatever alpha",
+           "use " + narrower);
   }
 
   PlacedBlend part_of(const Blend& blend, const Placement& here, std::optional<SkeletonModel> model = {}) {

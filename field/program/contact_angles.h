@@ -11,15 +11,15 @@
 
 namespace marrow {
 
-/// contact_alpha() takes some microseconds, too many for each of 10^5 blends alike.
+/// contact_angle() takes some microseconds, too many for each of 10^5 blends alike.
 class ContactAngles {
  public:
-  double of(const Blend& blend) {
+  const ContactAngle& of(const Blend& blend) {
     const Kernel& k = blend.kernel;
     const Key key{k.family, k.degree, k.shape, blend.cavity, blend.projection};
     const auto known = angles_.find(key);
     if (known != angles_.end()) return known->second;
-    return angles_[key] = contact_alpha(k, blend.cavity, blend.projection);
+    return angles_[key] = contact_angle(k, blend.cavity, blend.projection);
   }
   std::shared_ptr<const LocalContact> local(const Blend& blend, const AlphaLocalContact& rule) {
     const Kernel& k = blend.kernel;
@@ -33,7 +33,7 @@ class ContactAngles {
   std::map<std::tuple<KernelFamily, int, double, bool, Projection, bool, bool>, std::shared_ptr<const LocalContact>>
       local_;
   using Key = std::tuple<KernelFamily, int, double, bool, Projection>;
-  std::map<Key, double> angles_;
+  std::map<Key, ContactAngle> angles_;
 };
 
 }  // namespace marrow

@@ -1,5 +1,4 @@
-// Arcs, and triangles of more than one radius, under the Cauchy kernel by panels, under the compact one by adaptive
-// quadrature.
+// Arcs, and triangles that are narrow, under the Cauchy kernel by panels, under the compact one by adaptive quadrature.
 #include "field/skeleton/even_lines.h"
 #include "field/skeleton/skeletons.h"
 #include "field/skeleton/surface_integral.h"

@@ -47,12 +47,15 @@ ChordMoments moments_of(const Chord& c, int m) {
   const bool is_odd = m % 2 == 1;
   double integral = is_odd ? std::sqrt(c.rho2) * c.angle() : c.t2 - c.t1, lower = 0, lowest = 0;  // I(q) and before
   double power1 = is_odd ? std::sqrt(w1) : w1, power2 = is_odd ? std::sqrt(w2) : w2;              // w^(q+1)
-  double rise = 0, lower_rise = 0;                                                                // [w^q] and before
+  // [w^(q+1)] and before, from [w] by sums of one sign
+  const double by = (c.t1 - c.t2) * (c.t1 + c.t2) / c.rho2;
+  double next_rise = !is_odd ? by : by == 0 ? 0 : by / (power1 + power2), rise = 0, lower_rise = 0;
   for (int twice_q = is_odd ? -1 : 0; twice_q < m; twice_q += 2, power1 *= w1, power2 *= w2) {
     lowest = lower;
     lower = integral;
     lower_rise = rise;
-    rise = power2 - power1;
+    rise = next_rise;
+    next_rise = w2 * rise + power1 * by;
     integral = (c.t2 * power2 - c.t1 * power1 + (twice_q + 2) * (c.l2 / c.rho2) * integral) / (twice_q + 3);
   }
   ChordMoments moments{.value = integral, .slope = {lower, -c.rho2 / m * rise}};

@@ -122,7 +122,6 @@ void between_roots(const LineOf<X>& line, const X& from, const X& to, const X& b
   const double first = value_of(a), last = value_of(b);
   const int power = degree + 5;
   const auto nodes = [&](const auto& at) {
-    if (line.slope == 0 && for_each_cosine_node(first, last - first, power, at)) return;
     for_each_panel(first, last, pole, power <= 16 ? 1.6 : 1,
                    [&](const Panel& panel) { for_each_node(panel, max_kernel_degree, at); });
   };

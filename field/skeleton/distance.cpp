@@ -41,9 +41,8 @@ double distance_to(const ArcSkeleton& s, const Vec3d& p) {
   const double turns = (atan2(y, x) - 0.5 * (s.begin + s.end)) / turn, from_middle = turns - std::floor(turns + 0.5);
   if (std::fabs(from_middle) * turn > 0.5 * (s.end - s.begin))
     return std::min(length(p - place_at(s, s.begin)), length(p - place_at(s, s.end)));
-  const double across = std::sqrt(x * x + y * y) - s.major;
-  const double height2 = std::max(0.0, length_squared(w) - x * x - y * y);
-  return std::sqrt(across * across + height2);
+  const double across = std::sqrt(x * x + y * y) - s.major, height = dot(cross(s.axis1, s.axis2), w);
+  return std::sqrt(across * across + height * height);
 }
 
 }  // namespace marrow

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 
-#include "field/math/elementary.h"
 #include "field/skeleton/compact_chord.h"
 #include "field/skeleton/moment_sample.h"
 #include "field/skeleton/surface_integral.h"
@@ -15,7 +14,7 @@ namespace {
 // Two triangles, cut along the line through the corner of the middle radius on which the radius is that: it is the
 // base of both, and all lines parallel to it have one radius.
 struct EvenCut {
-  Vec3d middle, cut;
+  Vec3d middle, along;  // to the other end of that line: from differences, so that places lose no digits far out
   double radius;
   std::array<std::size_t, 2> apexes;
 
@@ -26,16 +25,18 @@ struct EvenCut {
     middle = t.vertices[by[1]];
     apexes = {by[0], by[2]};
     const double thin = t.radii[by[0]], thick = t.radii[by[2]];
-    cut = lerp(t.vertices[by[0]], t.vertices[by[2]], (radius - thin) / (thick - thin));
+    along = lerp(t.vertices[by[0]] - middle, t.vertices[by[2]] - middle, (radius - thin) / (thick - thin));
   }
 
   // With the normal of the whole triangle, as little may be left of a part.
   TriangleView view(const TriangleSkeleton& t, std::size_t apex, const Vec3d& p) const {
     const auto& v = t.vertices;
     const Vec3d side = v[apex] - middle, from_middle = p - middle;
-    const double base = length(cut - middle);
-    const UnitVec3 u = UnitVec3::unchecked((cut - middle) / base);
-    const Vec3d normal = normalize(cross(v[1] - v[0], v[2] - v[0])).vec(), w = cross(normal, u.vec());
+    const Vec3d normal = normalize(cross(v[1] - v[0], v[2] - v[0])).vec();
+    const Vec3d in_plane = along - normal * dot(along, normal);
+    const double base = length(in_plane);
+    const UnitVec3 u = UnitVec3::unchecked(in_plane / base);
+    const Vec3d w = cross(normal, u.vec());
     const double turn = dot(side, w) < 0 ? -1 : 1;
     const UnitVec3 up = UnitVec3::unchecked(w * turn), out = UnitVec3::unchecked(normal * turn);
     return {.u = u,
@@ -83,7 +84,8 @@ SkeletonSample compact_part(const TriangleView& view, const Kernel& kernel, cons
   return surface_integral::integrate_compact_lines<SkeletonSample>(view, kernel, add_line);
 }
 
-// (1 + s^2 d^2 / tau^2)^(-m/2) is (s / tau)^-m times a power of the distance from tau / s higher up.
+// (1 + s^2 d^2 / tau^2)^(-m/2) is (s / tau)^-m times a power of the distance from tau / s higher up: with that as the
+// radius moments are of numbers near 1, whatever the units.
 template <Derivatives Order>
 SkeletonSample cauchy_part(const TriangleView& view, const Kernel& kernel, const Profile& profile) {
   const int m = profile.degree();
@@ -95,12 +97,12 @@ SkeletonSample cauchy_part(const TriangleView& view, const Kernel& kernel, const
                              .t2 = at.line.t2,
                              .h_squared = at.line.h_squared + up * up,
                              .slope = 0,
-                             .radius1 = 1,
-                             .radius_at_foot = 1};
-    const double scale = weight * integer_power(up, m) / (profile.normalisation() * tau * tau);
+                             .radius1 = up,
+                             .radius_at_foot = up};
+    const double scale = weight * up / (profile.normalisation() * tau * tau);
     SkeletonSample part = sample_of<Order>(segment_moments<Order>(lifted, m), at.u, at.across, m, scale);
-    part.si_gradient = part.si_gradient * tau;
-    part.si_jacobian = part.si_jacobian * tau;
+    part.si_gradient = part.si_gradient * kernel.shape;
+    part.si_jacobian = part.si_jacobian * kernel.shape;
     sum += part;
   };
   return surface_integral::integrate_cauchy_lines<SkeletonSample>(view, kernel, add_line);

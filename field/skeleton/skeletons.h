@@ -47,7 +47,7 @@ template <Derivatives>
 SkeletonSample distance_field(const ArcSkeleton&, const Vec3d& p, const Kernel&);
 
 /// The integrals under the Cauchy or the compact kernel (kernel.family is not the inverse one); finite everywhere.
-/// A segment costs some panels of 20 nodes, under the compact kernel one of 3 to 12, or none for one radius
+/// A segment costs some panels of 20 nodes, under compact kernels of even degree one of 3 to 12, or none for one radius
 /// (compact_rule.h, compact_chord.h); an arc some hundred nodes, a triangle of one radius as many along each side
 /// (compact_plate.h), of several radii some hundred lines (even_lines.h), in pieces between the places where the edge
 /// of the support cuts it (support_edge.h). Relative error below 1e-12, and 1e-11 of triangles a thousand radii

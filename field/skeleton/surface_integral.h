@@ -137,9 +137,9 @@ Sum integrate_inverse_lines(const TriangleView& v, const Kernel& kernel, const V
 
 }  // namespace surface_integral
 
-/// The compact kernel of degree 2 has a slope of -1/R^2 up to its edge and none beyond, so that the integral of grad_S
-/// changes with p by what the moving edge takes in, too: grad_S there times -dt/dp = 2 v / |dE/dt|. `weight`: of a node
-/// of the edge, over |dE/dt|.
+/// The compact kernel w^(m/2) with m = 2 (triangles at degree 3) has a slope of -1/R^2 up to its edge and none beyond,
+/// so that the integral of grad_S changes with p by what the moving edge takes in, too: grad_S there times -dt/dp = 2 v
+/// / |dE/dt|. `weight`: of a node of the edge, over |dE/dt|.
 inline void add_steep_edge(const Profile& profile, double R, const Vec3d& v, double tau, double weight,
                            SkeletonSample& sum) {
   sum.si_jacobian += Matrix3::outer(v, v) * (4 * weight / (R * R * profile.normalisation() * tau * tau * tau));

@@ -1,4 +1,5 @@
-// The two ways to the field of a triangle; internal to skeleton/, and for tests of one against the other.
+// Ways to the field of a triangle (for several radii under bounded kernels see even_lines.h, too); internal to
+// skeleton/, and for tests of one against the other.
 #pragma once
 
 #include <optional>

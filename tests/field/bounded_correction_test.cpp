@@ -171,7 +171,7 @@ TEST(BoundedCorrection, JoinsEqualSkeletonsExactlyWhenTheyTouch) {
     for (const Kernel& kernel : {Kernel{KernelFamily::Cauchy, n, n == 3 ? 1.1 : 1}, Kernel{KernelFamily::Cauchy, n, 2},
                                  Kernel{KernelFamily::Compact, n, 1.3}, Kernel{KernelFamily::Compact, n, 1.6}})
       for (const Projection projection : {Projection::Paper, Projection::Exact}) {
-        ASSERT_TRUE(contact_is_exact(kernel, true, projection)) << n << ' ' << kernel.shape;
+        ASSERT_TRUE(contact_angle(kernel, true, projection).is_exact) << n << ' ' << kernel.shape;
         const double alpha = contact_alpha(kernel, true, projection);
         const auto between = [&](double distance) {
           BlendField blend;

@@ -70,6 +70,16 @@ void expect_same(const SecondOrderSample& a, const SecondOrderSample& b) {
   EXPECT_LE(off, tolerance * size);
 }
 
+SkeletonSample field_of(const SegmentSkeleton& s, const Vec3d& p, const Kernel& kernel) {
+  return segment_field<Derivatives::Second>(s, p, kernel);
+}
+SkeletonSample field_of(const TriangleSkeleton& s, const Vec3d& p, const Kernel& kernel) {
+  return triangle_field<Derivatives::Second>(s, p, kernel);
+}
+SkeletonSample field_of(const ArcSkeleton& s, const Vec3d& p, const Kernel& kernel) {
+  return arc_field<Derivatives::Second>(s, p, kernel);
+}
+
 template <class Skeleton>
 void expect_moves(const Skeleton& s, const Vec3d& p, const Kernel& kernel) {
   constexpr auto second = Derivatives::Second;
@@ -77,6 +87,7 @@ void expect_moves(const Skeleton& s, const Vec3d& p, const Kernel& kernel) {
   expect_same(distance_field<second>(s, p, kernel), distance_field<second>(moved(s), q, kernel));
   expect_same(second_order_by_distance(s, p, kernel), second_order_by_distance(moved(s), q, kernel));
   expect_same(second_order(s, p, kernel), second_order(moved(s), q, kernel));
+  if (kernel.family != KernelFamily::Inverse) expect_same(field_of(s, p, kernel), field_of(moved(s), q, kernel));
 }
 
 TEST(FarFromTheOrigin, FieldsAreTheSame) {

@@ -190,6 +190,66 @@ TEST(SumBounds, HoldForTheCompactKernelsOfTheLowestDegrees) {
   EXPECT_GT(told.gradients, 5000);
 }
 
+// Whose radius grows nearly as fast as the support, from places around the tip and behind it, where only its mirror
+// image would be.
+TEST(SumBounds, HoldForSteepConesOfTheLowestDegree) {
+  const auto draw = [](Random& random) {
+    BlendField blend = compact_blend(random, 3);
+    const double slope = (1 - pow(10, random.between(-4.5, -2))) / blend.kernel_shape, begin = random.between(10, 60),
+                 end = begin + random.between(5, 20);
+    blend.segments.add({{begin, 0, 0}, {end, 0, 0}, begin * slope, end * slope}, {});
+    return blend;
+  };
+  check_sums(draw, 66, 6000, 1e-8);
+}
+// From behind the tip, where only the mirror image of the cone has roots, to where the cone itself comes in.
+TEST(SumBounds, HoldAcrossThePlaneOfATip) {
+  BlendField blend;
+  blend.degree = 3;
+  blend.kernel = KernelFamily::Compact;
+  blend.kernel_shape = 2;
+  constexpr double slope = 0.99959907 / 2;
+  blend.segments.add({{1000, 0, 0}, {1200, 0, 0}, 1000 * slope, 1200 * slope}, {});
+  for (const double height : {10.0, 20.0, 30.59265, 35.0}) {
+    const Vec3d center{-1, height, 0}, half{1.868, 0, 0};
+    const Stretch way{half, normalize(half), 0, 0};
+    const SumBounds sum(blend, Box3{center, center}.padded(half.x), Wanted::Slopes, &way);
+    for (int k = -20; k <= 20; ++k) {
+      const auto at = sum_of_primitives<Derivatives::Second>(blend, center + half * (k / 20.0));
+      for (std::size_t i = 0; i < 3; ++i) expect_in(sum.S_along(i), at.si_jacobian.rows[i].x, 1e-8, "slope of S");
+    }
+  }
+}
+// Near the edge of their support, where angles from the place are small.
+TEST(SumBounds, HoldBesideCirclesOfManyRadii) {
+  Random random(68);
+  Told told;
+  for (int i = 0; i < 400; ++i) {
+    SCOPED_TRACE(i);
+    BlendField blend = compact_blend(random, 3);
+    const double major = pow(10, random.between(1, 6)), depth = pow(10, random.between(-6, -0.5));
+    ArcSkeleton s{.center = {}, .major = major, .radius_from = 0.05, .radius_to = 0.05};
+    blend.arcs.add(s, {});
+    const double reach = blend.kernel_shape * s.radius_from, half = reach * depth * random.between(0.05, 1);
+    const auto [sine, cosine] = sincos(random.between(-3, 3));
+    const Vec3d center = Vec3d{cosine, sine, 0} * (major + reach * (1 - depth));
+    const SumBounds sum(blend, Box3{center, center}.padded(half));
+    const auto middle = sum_of_primitives<Derivatives::Second>(blend, center);
+    for (int k = 0; k < 8; ++k)
+      check_place(sum, sum_of_primitives<Derivatives::Second>(blend, center + random.vector(half)), middle, 1e-6, told);
+  }
+}
+// A bound of how far their Jacobians change, where no other degree helps.
+TEST(SumBounds, TellJacobiansOfSegmentsOfTheLowestDegree) {
+  const auto draw = [](Random& random) {
+    BlendField blend = compact_blend(random, 3);
+    blend.segments.add(random.segment(), {});
+    return blend;
+  };
+  const Told told = check_sums(draw, 67, 1500, 1e-8);
+  EXPECT_GT(told.Js, 20000);
+}
+
 // Parts of an arc may have bounds of their second derivatives where all of it has none, because its radius grows.
 TEST(SumBounds, TellNothingOfAnArcThatItsPartsDoNot) {
   const auto draw = [](Random& random) {

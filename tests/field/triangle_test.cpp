@@ -100,9 +100,13 @@ struct Comparison {
   int count = 0;
   double worst = 0, worst_jacobian = 0;
 
+  // what is not a number stays
+  static void keep_worse(double& worst, double x) {
+    if (!(x <= worst)) worst = x;
+  }
   void add(const SkeletonSample& a, const SkeletonSample& b) {
-    worst = std::max(worst, difference(a, b));
-    worst_jacobian = std::max(worst_jacobian, jacobian_difference(a, b));
+    keep_worse(worst, difference(a, b));
+    keep_worse(worst_jacobian, jacobian_difference(a, b));
     ++count;
   }
 };

@@ -35,12 +35,9 @@ double joining_alpha(const Kernel& kernel, bool cavity, Projection projection) {
   }
 }
 
-struct Contact {
-  double alpha;
-  bool is_exact;
-};
+}  // namespace
 
-Contact contact_of(const Kernel& kernel, bool cavity, Projection projection) {
+ContactAngle contact_angle(const Kernel& kernel, bool cavity, Projection projection) {
   // at alpha = 0, C is at most the top of the curve, which may be 1 but for rounding
   constexpr double rounding = 1e-9;
   const bool is_apart_at_0 = Correction(kernel, 0, cavity, projection).value(2, 0) < 1 - rounding;
@@ -51,18 +48,12 @@ Contact contact_of(const Kernel& kernel, bool cavity, Projection projection) {
   return {solid_alpha(kernel, joining_alpha(kernel, false, projection), cavity, projection), false};
 }
 
-}  // namespace
-
 double contact_alpha(const Kernel& kernel, bool cavity, Projection projection) {
-  return contact_of(kernel, cavity, projection).alpha;
+  return contact_angle(kernel, cavity, projection).alpha;
 }
 
 double contact_alpha(int degree, bool cavity, Projection projection) {
   return contact_alpha(Kernel{.degree = degree}, cavity, projection);
-}
-
-bool contact_is_exact(const Kernel& kernel, bool cavity, Projection projection) {
-  return contact_of(kernel, cavity, projection).is_exact;
 }
 
 }  // namespace marrow

@@ -10,9 +10,14 @@ namespace marrow {
 double contact_alpha(int degree, bool cavity = true, Projection = Projection::Paper);
 
 /// The same for any kernel. Where even alpha = 0 joins two such skeletons before they touch (C(2, 0) >= 1 there: wide
-/// supports, small scales), or lone ones are hollow at the angle that is exact, nothing is: the angle without cavity
-/// correction is given, or if a lone skeleton were hollow then, the least at which it is not. contact_is_exact() tells.
+/// supports, small scales), or lone ones are hollow at the angle that is exact, nothing is: with cavity correction the
+/// angle without it is given, or if a lone skeleton were hollow then, the least at which it is not. Without cavity
+/// correction hollows stay.
+struct ContactAngle {
+  double alpha;
+  bool is_exact;
+};
+ContactAngle contact_angle(const Kernel&, bool cavity = true, Projection = Projection::Paper);
 double contact_alpha(const Kernel&, bool cavity = true, Projection = Projection::Paper);
-bool contact_is_exact(const Kernel&, bool cavity = true, Projection = Projection::Paper);
 
 }  // namespace marrow

@@ -15,6 +15,7 @@
 #include "field/math/box3.h"
 #include "field/math/elementary.h"
 #include "field/number/functions.h"
+#include "field/skeleton/arc_view.h"
 #include "field/skeleton/corners.h"
 #include "field/skeleton/parts.h"
 #include "field/skeleton/radii.h"
@@ -46,25 +47,24 @@ class AroundCircle {
       : pieces_(s.radius_from != s.radius_to && s.end - s.begin > 2 * (pi - bent) ? 2 : 1),
         reach_(R * largest_radius(s)),
         least_reach_(R * least_radius(s)),
-        steep_(R * std::fabs(s.radius_to - s.radius_from) / (s.end - s.begin)),
-        rho_(rho * more) {
-    const Vec3d from_center = p - s.center;
-    const double x = dot(s.axis1, from_center), y = dot(s.axis2, from_center), out = std::sqrt(x * x + y * y);
-    nearest2_ = std::max(0.0, length_squared(from_center) - out * out) + square(out - s.major);
-    pull_ = 2 * s.major * out;
-    least_pull_ = 2 * s.major * std::max(0.0, out - rho_);
-    most_off_ = rho_ < out ? asin(rho_ / out) * more : pi;
+        steep_(R * std::fabs(s.radius_to - s.radius_from) / (s.end - s.begin)) {
+    const ArcView view = view_from(s, p);
+    rho_ = rho * more + 1e-14 * (s.major + view.r);  // of places that are rounded
+    nearest2_ = view.gap();
+    pull_ = 2 * s.major * view.r;
+    least_pull_ = 2 * s.major * std::max(0.0, view.r - rho_);
+    most_off_ = rho_ < view.r ? asin(rho_ / view.r) * more : pi;
   }
 
   // Up to this angle the support reaches from some place.
   double end() const {
-    const double left = square(reach_ * more + rho_) - nearest2_ * less;
-    return left < 2 * pull_ ? acos(std::min(1.0, 1 - left / pull_)) * more : pi;
+    const double left = std::max(0.0, square(reach_ * more + rho_) - nearest2_ * less);
+    return left < 2 * pull_ ? 2 * asin(std::sqrt(left / (2 * pull_))) * more : pi;
   }
 
   // The integral of 1 / sqrt(Q) over the angles from 0 <= from to to <= pi on one side.
   double beside(double from, double to) const {
-    const double farthest = (std::sqrt(nearest2_ + pull_ * (1 - cos(to))) + rho_) * more;
+    const double farthest = (std::sqrt(nearest2_ + 2 * pull_ * square(sin(0.5 * to))) + rho_) * more;
     const double low = from - most_off_, high = to + most_off_;
     const double sine = low > 0 && high < pi ? std::min(sin(low), sin(high)) * less : 0;
     return std::min(if_inside(to - from, square(least_reach_) - square(farthest)),
@@ -105,6 +105,7 @@ double roots_moved(const SegmentSkeleton& s, double R, const Vec3d& p, double st
   const double open = 1 - square(R * slope);
   const Vec3d u = (s.to - s.from) / along, from_start = p - s.from;
   const double foot = dot(from_start, u), at_foot = s.radius_from + slope * foot;
+  if (!(at_foot > 0)) return all;  // behind the tip roots are those of the cone's mirror image
   const double l2 = (square(R * at_foot) - open * length_squared(from_start - u * foot)) / square(open);
   if (!(l2 > 0)) return all;
   // Within 2 l of the middle, which holds the roots of Q + by.
@@ -149,6 +150,7 @@ Strip strip_of(const TriangleSkeleton& s, double R, const Vec3d& p, double rho) 
 
 }  // namespace
 
+// They have m >= 4, so that nothing asks.
 double edge_bend(const PointSkeleton&, const Profile&, double, const Vec3d&, double) { return inf; }
 
 // Q'' = -2 (1 - (R tau')^2) along it.
@@ -168,8 +170,10 @@ double edge_bend(const TriangleSkeleton& s, const Profile& profile, double R, co
   const Strip strip = strip_of(s, R, p, rho);
   if (strip.is_empty()) return 0;
   const double thin2 = square(strip.thin), thick2 = square(strip.thick);
-  if (profile.degree() == 3)
-    return bend_of(pi * strip.width * (strip.thin + strip.thick) / (2 * thin2 * thick2), profile, R);
+  if (profile.degree() == 3) {
+    const double in_ball = 2 * R * strip.thick / (thin2 * strip.thin);  // no place has more of it within its reach
+    return bend_of(pi * std::min(in_ball, strip.width * (strip.thin + strip.thick) / (2 * thin2 * thick2)), profile, R);
+  }
   const double held = share_within(s, R * strip.thick) * square(least_radius(s));
   const double even = 2 / (R * R) * held / square(thin2), at_edge = 4 * if_bent(2 * strip.open) / thin2;
   return (even + at_edge) / profile.normalisation() * more;
@@ -177,8 +181,9 @@ double edge_bend(const TriangleSkeleton& s, const Profile& profile, double R, co
 
 // Second derivatives of the kernel are -a w^(1/2) + b w^(-1/2) v v^T, a = 3/R^2, b = 3/R^4, v the scaled way.
 double edge_bend_change(const SegmentSkeleton& s, const Profile& profile, double R, const Vec3d& p, double step) {
+  constexpr double least_open = 1e-5;  // so that rounding is some 1e-11 of it, which `more` holds
   const double open = 1 - square(R * (s.radius_to - s.radius_from) / length(s.to - s.from));
-  if (!(open > 1e-5)) return inf;
+  if (!(open > least_open)) return inf;
   const double moved = roots_moved(s, R, p, step), least = least_radius(s), far = step / least;
   const double a = 3 / (R * R), b = a / (R * R), changed = far * (2 * R + far);  // of d^2, scaled
   const double held = share_within(s, R * largest_radius(s) + step);
