@@ -163,6 +163,10 @@ double error_under_compact_kernel(const Skeleton& s, const Vec3d& p, const Kerne
   return error_of(sample.value, exact.value) + error_of(sample.gradient, exact.gradient) +
          error_of(sample.si_gradient, exact.si);  // not the largest: what is not a number must stay
 }
+std::string told_of(int round, const Kernel& kernel) {
+  return "round " + std::to_string(round) + ", degree " + std::to_string(kernel.degree) + ", support " +
+         std::to_string(kernel.shape);
+}
 // Of numbers with derivatives against samples.
 double derivatives_off(const SegmentSkeleton& s, const Vec3d& p, const Kernel& kernel) {
   const SkeletonSample sample = segment_field<Derivatives::Second>(s, p, kernel);
@@ -186,11 +190,12 @@ TEST(Oracle, SegmentsWhoseRadiusGrowsAsFastAsTheSupport) {
     const Vec3d aside = normalize(cross(u, random.vector(1))).vec();
     const Vec3d p = begin + u * random.between(-0.5, length + 0.5) + aside * (to * kernel.shape * random.between(0, 1));
     const double error = error_under_compact_kernel(s, p, kernel, checked);
-    EXPECT_LE(error, 1e-12) << "seed 807 round " << i << ", degree " << kernel.degree << " support " << kernel.shape;
+    SCOPED_TRACE(told_of(i, kernel));
+    EXPECT_LE(error, 1e-12);
     worst.add("steep segment", error);
     if (error == 0) continue;
     const double off = derivatives_off(s, p, kernel);
-    EXPECT_LE(off, 1e-8) << "seed 807 round " << i << ", degree " << kernel.degree << " support " << kernel.shape;
+    EXPECT_LE(off, 1e-8);
     worst.add("derivatives of steep segments", off);
   }
   EXPECT_GT(checked, 120);
@@ -206,7 +211,7 @@ TEST(Oracle, TrianglesWhoseRadiusGrowsAsFastAsTheSupport) {
                              {from, to, i % 2 == 0 ? from : random.between(0.1, 0.8)}};
     const Vec3d p{random.between(-0.2, length + 0.2), random.between(-0.2, 0.8), random.between(0, 1) * to};
     const double error = error_under_compact_kernel(s, p, kernel, checked);
-    EXPECT_LE(error, 1e-12) << "seed 808 round " << i << ", degree " << kernel.degree << " support " << kernel.shape;
+    EXPECT_LE(error, 1e-12) << told_of(i, kernel);
     worst.add("steep triangle", error);
   }
   EXPECT_GT(checked, 15);
@@ -256,7 +261,7 @@ TEST(Oracle, TrianglesUnderTheCompactKernel) {
     const SkeletonSample sample = sample_of(s, p, kernel);
     const double error = std::max({error_of(sample.value, exact.value), error_of(sample.gradient, exact.gradient),
                                    error_of(sample.si_gradient, exact.si)});
-    EXPECT_LE(error, 1e-12) << "seed 806 round " << i << ", degree " << kernel.degree << " support " << kernel.shape;
+    EXPECT_LE(error, 1e-12) << told_of(i, kernel);
     worst.add("triangle compact", error);
     ++checked;
   }

@@ -150,7 +150,7 @@ Strip strip_of(const TriangleSkeleton& s, double R, const Vec3d& p, double rho) 
 
 }  // namespace
 
-// They have m >= 4, so that nothing asks.
+// They have m >= 4, so that nothing asks: for templates over skeletons.
 double edge_bend(const PointSkeleton&, const Profile&, double, const Vec3d&, double) { return inf; }
 
 // Q'' = -2 (1 - (R tau')^2) along it.

@@ -12,7 +12,7 @@ namespace marrow {
 /// |D^2 f|, its longest image of a unit vector, at most at any place within rho of p under k_m = w^(m/2), w = 1 - (d /
 /// (R radius))^2, of degree m = 3, or of triangles 2: its second derivatives grow without bound towards the edge of the
 /// support, or its first ones jump there, but integrals of them need not. Infinite where they do: at a place at whose
-/// edge half a circle lies at once, say, and of points.
+/// edge half a circle lies at once, say.
 double edge_bend(const PointSkeleton&, const Profile&, double R, const Vec3d& p, double rho);
 double edge_bend(const SegmentSkeleton&, const Profile&, double R, const Vec3d& p, double rho);
 double edge_bend(const ArcSkeleton&, const Profile&, double R, const Vec3d& p, double rho);
