@@ -18,6 +18,12 @@ constexpr int max_steps = 60;
 // The square of what is lower may not be a normal number; x_H is less than 1e-150 there.
 constexpr double smallest_height = 1e-150;
 
+// C is f* in whole volumes beside skeletons that lie in each other (|grad_S f| above the top, f below it). Where f* is
+// 1 but for rounding these are neither inside nor outside, and none of their rays can be told. By definition 1 is
+// outside: so the curve levels off where it is this much below 1, ten times more than bounds of f are widened by, so
+// that slopes at the surface are those beyond the top. The height there is the same to within its square.
+constexpr double below_iso = 1e-10;
+
 // (a^m - b^m) / (a - b)
 double power_quotient(double a, double b, int m) {
   double sum = 0, power = 1;
@@ -45,6 +51,7 @@ BoundedCurve::BoundedCurve(const Kernel& kernel) {
     g_0_ = (n + 1) * f_max_ / shape;
   }
   u_top_ = std::sqrt(e_ / (e_ + 1.0));
+  if (std::fabs(field_at(u_top_) - 1) < below_iso) u_top_ = parameter(1 - below_iso);
   f_top_ = field_at(u_top_);
   g_top_ = height_at(u_top_);
 }
@@ -74,7 +81,7 @@ double BoundedCurve::slope(const Place& place) const {
 BoundedCurve::Place BoundedCurve::place_of_height(double G) const {
   if (!(G > smallest_height * g_0_)) return {0, 0, 0};
   if (!(G < g_top_)) return {f_top_, g_top_, u_top_};
-  const double target = (G / g_0_) * (G / g_0_), v_top = e_ / (e_ + 1.0);
+  const double target = (G / g_0_) * (G / g_0_), v_top = u_top_ * u_top_;
   double v = root(target, e_);
   for (int step = 0; step < max_steps; ++step) {
     const double here = integer_power(v, e_) * (1 - v), slope = e_ - v / (1 - v);
