@@ -74,15 +74,15 @@ DirectionSample direction_of(const BlendField& blend, const SkeletonSample& s, c
   }
 }
 
-template <Derivatives Order, class EachPrimitive>
-Gathered by_direction(const BlendField& blend, const Vec3d& p, const EachPrimitive& each_primitive) {
+// each_direction(visit) calls visit(sample, direction, strand) for each primitive.
+template <Derivatives Order, class EachDirection>
+Gathered by_direction(const BlendField& blend, const EachDirection& each_direction) {
   Gathered all;
   std::vector<Strand> strands(blend.direction_bounds.size());
   for (std::size_t i = 0; i < strands.size(); ++i) strands[i].bounds = blend.direction_bounds[i];
-  each_primitive([&](const SkeletonSample& s, const auto& list, std::size_t i) {
+  each_direction([&](const SkeletonSample& s, const DirectionSample& direction, std::size_t index) {
     all.sum += s;
-    Strand& strand = strands[list.strands[i]];
-    const DirectionSample direction = direction_of(blend, s, list, i, p);
+    Strand& strand = strands[index];
     strand.field += s.value;
     strand.field_gradient += s.gradient;
     strand.direction += direction.value;
@@ -165,7 +165,12 @@ template <Derivatives Order>
 Gathered gather_by_rule(const BlendField& blend, const Vec3d& p) {
   const auto each_primitive = [&](const auto& visit) { for_each_primitive<Order>(blend, p, visit); };
   if (blend.alpha_per_skeleton) return per_skeleton(blend, p, each_primitive);
-  if (!blend.direction_bounds.empty()) return by_direction<Order>(blend, p, each_primitive);
+  const auto each_direction = [&](const auto& visit) {
+    each_primitive([&](const SkeletonSample& s, const auto& list, std::size_t i) {
+      visit(s, direction_of(blend, s, list, i, p), list.strands[i]);
+    });
+  };
+  if (!blend.direction_bounds.empty()) return by_direction<Order>(blend, each_direction);
   if (blend.local_contact) return by_local_contact<Order>(blend, p);
   if (blend.alpha_source) return with_angle<Order>(blend, p, blend.alpha_source->at(p));
   return with_angle<Order>(blend, p, {.value = blend.alpha});
@@ -179,13 +184,33 @@ std::optional<Neighbourhood> neighbourhood_at(const BlendField& blend, const Vec
   return is_usable(sum) ? std::optional(place) : std::nullopt;
 }
 
-AlphaSample alpha_of(const BlendField& blend, const Vec3d& p, const std::vector<PrimitiveBounds>& parts) {
+AlphaSample alpha_of_skeletons(const BlendField& blend, const Vec3d& p, const std::vector<PrimitiveBounds>& parts) {
   const auto each_primitive = [&](const auto& visit) {
     visit_parts(blend, parts,
                 [&](const PrimitiveBounds& part, const auto& list, std::size_t i) { visit(part.sample, list, i); });
   };
-  if (blend.alpha_per_skeleton) return per_skeleton(blend, p, each_primitive).alpha;
-  return by_direction<Derivatives::First>(blend, p, each_primitive).alpha;
+  return per_skeleton(blend, p, each_primitive).alpha;
+}
+
+std::vector<DirectionSample> directions_of(const BlendField& blend, const Vec3d& p,
+                                           const std::vector<PrimitiveBounds>& parts) {
+  std::vector<DirectionSample> all;
+  all.reserve(parts.size());
+  visit_parts(blend, parts, [&](const PrimitiveBounds& part, const auto& list, std::size_t i) {
+    all.push_back(direction_of(blend, part.sample, list, i, p));
+  });
+  return all;
+}
+
+AlphaSample alpha_of_directions(const BlendField& blend, const std::vector<PrimitiveBounds>& parts,
+                                const std::vector<DirectionSample>& directions) {
+  const auto each_direction = [&](const auto& visit) {
+    auto direction = directions.begin();
+    visit_parts(blend, parts, [&](const PrimitiveBounds& part, const auto& list, std::size_t i) {
+      visit(part.sample, *direction++, list.strands[i]);
+    });
+  };
+  return by_direction<Derivatives::First>(blend, each_direction).alpha;
 }
 
 template <Derivatives Order>

@@ -7,6 +7,7 @@
 #include "field/kernel/inverse_family.h"
 #include "field/kernel/panels.h"
 #include "field/math/elementary.h"
+#include "field/math/turned_angle.h"
 #include "field/skeleton/arc_view.h"
 #include "field/skeleton/skeletons.h"
 
@@ -38,8 +39,9 @@ SkeletonSample arc_field(const ArcSkeleton& arc, const Vec3d& p, int n) {
   SkeletonSample sum;
   // Within a radian the cosine is as good as a parabola to a rule of 20 nodes.
   for_each_panel(v.begin, v.end, singularities, 1, [&](const Panel& panel) {
+    const TurnedAngle half((panel.begin + panel.length / 2) / 2);
     for_each_node(panel, max_kernel_degree, [&](double angle, double weight) {
-      const auto [sine, cosine] = sincos(angle / 2);
+      const auto [sine, cosine] = half.at(angle / 2);
       const double sag = 2 * arc.major * sine * sine;  // major (1 - cos angle)
       const double inverse = 1 / (gap + 2 * v.r * sag), tau = arc.radius_from + tau_slope * (angle - v.begin);
       const Vec3d from_arc =

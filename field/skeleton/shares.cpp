@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "field/skeleton/corners.h"
+#include "field/skeleton/distance.h"
 #include "field/skeleton/nearest_place.h"
 #include "field/skeleton/skeletons.h"
 #include "field/skeleton/surface_integral.h"
@@ -30,16 +31,11 @@ struct ShareSum : SkeletonSample {
   }
 };
 
-bool is_on(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
-  return kernel.family == KernelFamily::Inverse &&
-         arc_field<Derivatives::ScaleInvariant>(arc, p, kernel.degree).value > field_ceiling;
-}
-
 ShareSum along(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
-  if (is_on(arc, p, kernel)) return {};
+  if (kernel.family == KernelFamily::Inverse && distance_to(arc, p) == 0) return {};
   const Profile profile(kernel, 1);
   const Vec3d axis = cross(arc.axis1, arc.axis2), from_center = p - arc.center;
-  return integrate_arc<ShareSum>(
+  const ShareSum all = integrate_arc<ShareSum>(
       arc, p, kernel, [&](const Vec3d& v, double tau, double share, double weight, ShareSum& sum) {
         SkeletonSample part;
         add_source<Derivatives::First>(profile, v, tau, weight / (profile.normalisation() * tau), part);
@@ -49,6 +45,7 @@ ShareSum along(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
         sum.direction.value += tangent * part.value;
         sum.direction.jacobian += Matrix3::outer(tangent, part.gradient);
       });
+  return all.value <= field_ceiling ? all : ShareSum{};
 }
 
 Shares weighted(Shares at, const SkeletonSample& field) {

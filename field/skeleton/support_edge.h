@@ -61,8 +61,10 @@ void add_sign_change(const Function& f, double a, double b, Cuts& cuts) {
 }
 
 /// Of an arc from `near` to `far`, angles x in [0, pi] to one side of the place nearest to the point, of radius
-/// tau + slope x: the zeros of E(x) = d^2 - R^2 tau(x)^2, of which there are at most three, as E'' vanishes once.
+/// tau + slope x: the zeros of E(x) = d^2 - R^2 tau(x)^2, of which there are at most three, as E'' vanishes once. Where
+/// the radius stays as it is E rises, and `far` is no farther than its zero.
 inline Cuts edges_on_arc(const ArcView& v, double tau, double slope, double R, double near, double far) {
+  if (slope == 0) return {near, far};
   const double chord = 2 * v.r * v.major, R2 = R * R, steady = R2 * slope * slope;
   const auto excess = [&](double x) {
     const double half = sin(x / 2), radius = tau + slope * x;
@@ -102,22 +104,21 @@ inline Cuts edges_on_lines(const TriangleView& v, double R, double begin, double
   return cuts;
 }
 
-/// The integral over all pieces, each by x = middle + half sin(angle), so that half powers of what vanishes at a cut
-/// are smooth. visit and agree as of integrate_adaptively(), but the third that agree is told is of all pieces.
-template <class Sum, class Visit, class Agree>
-Sum integrate_between(const Cuts& cuts, const Visit& visit, const Agree& agree) {
-  constexpr double right_angle = std::numbers::pi / 2;
-  const auto node_of = [&](double a, double b) {
-    return [&visit, middle = (a + b) / 2, half = (b - a) / 2](double angle, double weight, Sum& part) {
-      const auto [sine, cosine] = sincos(angle);
-      visit(middle + half * sine, weight * half * cosine, part);
+/// The integral over all pieces, each by x = middle + half (3 s - s^3) / 2, so that half powers of what vanishes at a
+/// cut are smooth: x - begin = half (1 + s)^2 (2 - s) / 2. visit_in(begin, end) is what visits the nodes of a piece;
+/// that and agree as of integrate_adaptively(), but the third that agree is told is of all pieces.
+template <class Sum, class VisitIn, class Agree>
+Sum integrate_between(const Cuts& cuts, const VisitIn& visit_in, const Agree& agree) {
+  const auto node_of = [&visit_in](double a, double b) {
+    return [visit = visit_in(a, b), middle = (a + b) / 2, half = (b - a) / 2](double s, double weight, Sum& part) {
+      visit(middle + half * (0.5 * s * (3 - s * s)), weight * half * (1.5 * (1 - s * s)), part);
     };
   };
   std::array<Sum, Cuts::most_pieces> wholes{};
   Sum estimate, sum;
   std::size_t pieces = 0;
   cuts.for_each_piece([&](double a, double b) {
-    wholes[pieces] = over_panel<Sum>(-right_angle, 2 * right_angle, node_of(a, b));
+    wholes[pieces] = over_panel<Sum>(-1, 2, node_of(a, b));
     estimate += wholes[pieces++];
   });
   const auto agree_in_all = [&](const Sum& coarse, const Sum& fine, const Sum& gathered) {
@@ -125,7 +126,7 @@ Sum integrate_between(const Cuts& cuts, const Visit& visit, const Agree& agree) 
   };
   pieces = 0;
   cuts.for_each_piece([&](double a, double b) {
-    sum += integrate_adaptively<Sum>(-right_angle, right_angle, wholes[pieces++], node_of(a, b), agree_in_all);
+    sum += integrate_adaptively<Sum>(-1, 1, wholes[pieces++], node_of(a, b), agree_in_all);
   });
   return sum;
 }

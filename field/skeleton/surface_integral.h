@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "field/kernel/adaptive.h"
+#include "field/math/turned_angle.h"
 #include "field/skeleton/arc_view.h"
 #include "field/skeleton/line_integral.h"
 #include "field/skeleton/support_edge.h"
@@ -54,7 +55,8 @@ inline CauchyPanels cauchy_panels(double least_radius, double slope, double s) {
   return {least_radius * least_radius / (2 * s * s), slope == 0 ? std::numeric_limits<double>::infinity() : quarter};
 }
 
-// Calls visit(angle, weight, sum): the angle from the place nearest to the point.
+// Calls visit(angle, half, turn, weight, sum): the angle from the place nearest to the point, up to whole turns, and
+// half of it.
 template <class Sum, class Visit>
 Sum integrate_cauchy_arc(const ArcView& v, const CauchyPanels& limits, const Visit& visit) {
   const double gap = v.gap() + limits.softening, turn = 2 * std::numbers::pi;
@@ -63,7 +65,9 @@ Sum integrate_cauchy_arc(const ArcView& v, const CauchyPanels& limits, const Vis
   const std::array<Singularity, 3> singularities{Singularity{-turn, eta}, Singularity{0, eta}, Singularity{turn, eta}};
   Sum sum;
   for_each_panel(v.begin, v.end, singularities, std::min(1.0, limits.longest), [&](const Panel& panel) {
-    for_each_node(panel, max_kernel_degree, [&](double angle, double weight) { visit(angle, 0, weight, sum); });
+    const TurnedAngle half((panel.begin + panel.length / 2) / 2);
+    for_each_node(panel, max_kernel_degree,
+                  [&](double angle, double weight) { visit(angle, half.at(angle / 2), 0, weight, sum); });
   });
   return sum;
 }
@@ -80,9 +84,13 @@ Sum integrate_compact_arc(const ArcView& v, const ArcSkeleton& arc, double R, do
       const double near = std::max(0.0, first), far = std::min(within, last);
       if (!(near < far)) continue;
       const double tau = arc.radius_from + slope * (turn - v.begin);
-      sum += integrate_between<Sum>(
-          edges_on_arc(v, tau, side * slope, R, near, far),
-          [&](double angle, double weight, Sum& part) { visit(side * angle, turn, weight, part); }, agree);
+      const auto visit_in = [&](double a, double b) {
+        return [&, half = TurnedAngle((a + b) / 4)](double angle, double weight, Sum& part) {
+          const auto [sine, cosine] = half.at(angle / 2);
+          visit(side * angle, SinCos{side * sine, cosine}, turn, weight, part);
+        };
+      };
+      sum += integrate_between<Sum>(edges_on_arc(v, tau, side * slope, R, near, far), visit_in, agree);
     }
   return sum;
 }
@@ -121,7 +129,8 @@ Sum integrate_compact_lines(const TriangleView& v, const Kernel& kernel, const V
   const double width = std::sqrt((reach - v.p_normal) * (reach + v.p_normal));
   const double begin = std::max(-v.p_w, -width), end = std::min(v.apex_w - v.p_w, width);
   if (!(begin < end)) return {};
-  return integrate_between<Sum>(edges_on_lines(v, kernel.shape, begin, end), visit, agree);
+  const auto visit_in = [&](double, double) { return visit; };
+  return integrate_between<Sum>(edges_on_lines(v, kernel.shape, begin, end), visit_in, agree);
 }
 
 template <class Sum, class Visit>
@@ -153,9 +162,9 @@ Sum integrate_arc(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel, 
   using namespace surface_integral;
   const ArcView v = view_from(arc, p);
   const double tau_slope = (arc.radius_to - arc.radius_from) / (v.end - v.begin);
-  const auto at = [&](double angle, double turn, double weight, Sum& sum) {
+  const auto at = [&](double angle, const SinCos& half, double turn, double weight, Sum& sum) {
     const double from_begin = angle + turn - v.begin, tau = arc.radius_from + tau_slope * from_begin;
-    visit(v.from_arc(sincos(angle / 2)), tau, from_begin / (v.end - v.begin), weight * arc.major, sum);
+    visit(v.from_arc(half), tau, from_begin / (v.end - v.begin), weight * arc.major, sum);
   };
   if (kernel.family == KernelFamily::Inverse) return integrate_inverse_arc<Sum>(v, at);
   if (kernel.family == KernelFamily::Cauchy)

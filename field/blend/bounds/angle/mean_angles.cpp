@@ -123,7 +123,7 @@ MeanTerm angle_term(const BlendField& blend, const PrimitiveList<Skeleton>& list
 }
 
 AngleBounds by_skeletons(const BlendField& blend, const SumBounds& sum, const Parts& parts) {
-  const AlphaSample middle = alpha_of(blend, sum.center(), parts);
+  const AlphaSample middle = alpha_of_skeletons(blend, sum.center(), parts);
   const Vec3d common = common_slope(parts);
   std::vector<MeanTerm> terms;
   terms.reserve(parts.size());
@@ -140,10 +140,10 @@ AngleBounds by_skeletons(const BlendField& blend, const SumBounds& sum, const Pa
   return around(middle, mean_change(terms, range.width(), sum.rho()), range, sum);
 }
 
-// Points and triangles have no direction.
+// Points and triangles have no direction. `weighted`: the direction times the field in the middle.
 template <class Skeleton>
 SkeletonDirection direction_of(const BlendField& blend, const PrimitiveList<Skeleton>& list, std::size_t i,
-                               const SumBounds::Part& part, const Vec3d& p) {
+                               const SumBounds::Part& part, const DirectionSample& weighted, const Vec3d& p) {
   const Skeleton& skeleton = list.skeletons[i];
   if constexpr (std::same_as<Skeleton, SegmentSkeleton>) {
     return {.mean = normalize(skeleton.to - skeleton.from).vec()};
@@ -152,7 +152,7 @@ SkeletonDirection direction_of(const BlendField& blend, const PrimitiveList<Skel
     if (is_by_distance(blend, list))
       return {.mean = nearest_direction(skeleton, p, {.value = 1}).value, .turn = part.place_speed};
     if (!(f > 0)) return {.range = 2};
-    return {.mean = arc_direction(skeleton, p, kernel_of(blend)).value / f, .range = 2};
+    return {.mean = weighted.value / f, .range = 2};
   } else {
     return {};
   }
@@ -174,8 +174,10 @@ Interval skeleton_range(const BlendField& blend) {
 
 std::optional<AngleBounds> by_directions(const BlendField& blend, const SumBounds& sum, const Parts& parts) {
   std::vector<StrandTerms> strands(blend.direction_bounds.size(), StrandTerms(sum.rho()));
+  const std::vector<DirectionSample> directions = directions_of(blend, sum.center(), parts);
+  auto direction = directions.begin();
   visit_parts(blend, parts, [&](const SumBounds::Part& part, const auto& list, std::size_t i) {
-    strands[list.strands[i]].add(part, direction_of(blend, list, i, part, sum.center()));
+    strands[list.strands[i]].add(part, direction_of(blend, list, i, part, *direction++, sum.center()));
   });
   std::vector<StrandBounds> ordered;
   double total = 0;
@@ -187,7 +189,7 @@ std::optional<AngleBounds> by_directions(const BlendField& blend, const SumBound
   std::stable_sort(ordered.begin(), ordered.end(),
                    [](const StrandBounds& a, const StrandBounds& b) { return a.weight.value > b.weight.value; });
   const Interval range = direction_range(blend);
-  const AlphaSample middle = alpha_of(blend, sum.center(), parts);
+  const AlphaSample middle = alpha_of_directions(blend, parts, directions);
   // Of one strand alone the angle is that of parallel ones, everywhere; which of several is alone may change.
   if (ordered.size() == 1) return around({.value = middle.value}, {}, range, sum);
   if (ordered.empty() || !(ordered[1].weight.value > vanishing * total)) return {};
