@@ -127,15 +127,15 @@ SkeletonSample near_field_of(const auto& skeleton, const Vec3d& p) {
   else return arc_field<Derivatives::First>(skeleton, p, m);
 }
 
-template <Derivatives Order>
-Neighbourhood told(const BlendField& blend, const Vec3d& p, SkeletonSample& sum) {
+// each_near(visit) calls visit(sample, near sample, list, i) for each primitive.
+template <class EachNear>
+Neighbourhood told(const LocalContact& rule, const EachNear& each_near, SkeletonSample& sum) {
   Spread spread;
   SkeletonSample near;
-  const LocalContact& rule = *blend.local_contact;
-  for_each_primitive<Order>(blend, p, [&](const SkeletonSample& s, const auto& list, std::size_t i) {
+  each_near([&](const SkeletonSample& s, const SkeletonSample& n, const auto& list, std::size_t i) {
     sum += s;
     if (rule.adapts_to_radii()) spread.add(s, mean_radius(list.skeletons[i]));
-    if (rule.adapts_to_density()) near += near_field_of(list.skeletons[i], p);
+    near += n;
   });
   Neighbourhood place{.field = sum.value,
                       .field_gradient = sum.gradient,
@@ -146,11 +146,21 @@ Neighbourhood told(const BlendField& blend, const Vec3d& p, SkeletonSample& sum)
   return place;
 }
 
+SkeletonSample near_field_for(const LocalContact& rule, const auto& skeleton, const Vec3d& p) {
+  return rule.adapts_to_density() ? near_field_of(skeleton, p) : SkeletonSample{};
+}
+
 template <Derivatives Order>
 Gathered by_local_contact(const BlendField& blend, const Vec3d& p) {
   Gathered all;
-  const Neighbourhood place = told<Order>(blend, p, all.sum);
-  if (is_usable(all.sum)) all.alpha = blend.local_contact->at(place);
+  const LocalContact& rule = *blend.local_contact;
+  const auto each_near = [&](const auto& visit) {
+    for_each_primitive<Order>(blend, p, [&](const SkeletonSample& s, const auto& list, std::size_t i) {
+      visit(s, near_field_for(rule, list.skeletons[i], p), list, i);
+    });
+  };
+  const Neighbourhood place = told(rule, each_near, all.sum);
+  if (is_usable(all.sum)) all.alpha = rule.at(place);
   return all;
 }
 
@@ -178,10 +188,18 @@ Gathered gather_by_rule(const BlendField& blend, const Vec3d& p) {
 
 }  // namespace
 
-std::optional<Neighbourhood> neighbourhood_at(const BlendField& blend, const Vec3d& p) {
+PartsAround parts_around(const BlendField& blend, const Vec3d& p, const std::vector<PrimitiveBounds>& parts) {
+  PartsAround around;
+  const LocalContact& rule = *blend.local_contact;
+  const auto each_near = [&](const auto& visit) {
+    visit_parts(blend, parts, [&](const PrimitiveBounds& part, const auto& list, std::size_t i) {
+      around.near.push_back(near_field_for(rule, list.skeletons[i], p));
+      visit(part.sample, around.near.back(), list, i);
+    });
+  };
   SkeletonSample sum;
-  const Neighbourhood place = told<Derivatives::ScaleInvariant>(blend, p, sum);
-  return is_usable(sum) ? std::optional(place) : std::nullopt;
+  around.place = told(rule, each_near, sum);
+  return around;
 }
 
 AlphaSample alpha_of_skeletons(const BlendField& blend, const Vec3d& p, const std::vector<PrimitiveBounds>& parts) {

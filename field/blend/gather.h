@@ -2,7 +2,6 @@
 // blend/.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "field/blend/angle/local_contact.h"
@@ -17,8 +16,13 @@ struct Gathered {
   AlphaSample alpha;  ///< its gradient from Derivatives::First on
 };
 
-/// What the rule of local contact is told at p, with no gradients. Nothing where the sum is 0 or infinite.
-std::optional<Neighbourhood> neighbourhood_at(const BlendField&, const Vec3d& p);
+/// What the rule of local contact is told at p, from the samples of the parts there; and, if it adapts to density, the
+/// near field of each part.
+struct PartsAround {
+  Neighbourhood place;
+  std::vector<SkeletonSample> near;
+};
+PartsAround parts_around(const BlendField&, const Vec3d& p, const std::vector<PrimitiveBounds>&);
 
 /// The angle of a blend that has `alpha_per_skeleton`, from the samples of its parts at p. All segments of a strand by
 /// distance count that have a sample.

@@ -1,4 +1,4 @@
-// Skeletons cut into equal parts of the same kind.
+// How large skeletons are, and how they are cut into equal parts of the same kind.
 #pragma once
 
 #include <algorithm>
@@ -30,6 +30,11 @@ inline std::array<TriangleSkeleton, 4> parts(const TriangleSkeleton& s) {
   return {TriangleSkeleton{{v[0], ab, ca}, {r[0], rab, rca}}, TriangleSkeleton{{ab, v[1], bc}, {rab, r[1], rbc}},
           TriangleSkeleton{{ca, bc, v[2]}, {rca, rbc, r[2]}}, TriangleSkeleton{{bc, ca, ab}, {rbc, rca, rab}}};
 }
+
+constexpr int dimension_of(const PointSkeleton&) { return 0; }
+constexpr int dimension_of(const SegmentSkeleton&) { return 1; }
+constexpr int dimension_of(const ArcSkeleton&) { return 1; }
+constexpr int dimension_of(const TriangleSkeleton&) { return 2; }
 
 /// Length or area.
 inline double measure(const SegmentSkeleton& s) { return length(s.to - s.from); }

@@ -16,9 +16,6 @@
 namespace marrow {
 namespace {
 
-// The table runs over y = s / (1 + s), s the spread, up to a ratio of radii of e^3.
-constexpr double last_y = 0.9;
-
 constexpr int bisections = 50;
 
 SkeletonSample field_of(const PointSkeleton& s, const Vec3d& p, const Kernel& kernel) {
@@ -87,9 +84,14 @@ LocalContact::LocalContact(const Kernel& kernel, bool cavity, Projection project
       contact_(contact_alpha(kernel, cavity, projection)),
       least_(contact_) {
   if (radii_) make_table();
-  if (!density_) return;
+  if (density_) fit_ring();
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  range_ = within({0, inf}, {1, inf}).alpha;
+}
+
+void LocalContact::fit_ring() {
   const double in_ring = 2 * std::numbers::pi / curve_normalisation(kernel_.degree);
-  double low = projection == Projection::Exact ? 0 : -1, high = contact_;
+  double low = projection_ == Projection::Exact ? 0 : -1, high = contact_;
   for (int i = 0; i < bisections; ++i) {
     const double middle = low + (high - low) / 2;
     (Correction(kernel_, middle, cavity_, projection_).value(in_ring, 0) < 1 ? low : high) = middle;
@@ -106,7 +108,6 @@ double LocalContact::crowd_of_ring() const {
 }
 
 void LocalContact::make_table() {
-  constexpr double step = last_y / (entries - 1);
   for (std::size_t i = 1; i < entries; ++i) {
     const double y = step * static_cast<double>(i), spread = y / (1 - y);
     angle_[i] = TouchingPair{kernel_, cavity_, projection_, contact_, exp(-std::sqrt(spread))}.extra_angle();
@@ -118,75 +119,83 @@ void LocalContact::make_table() {
   slope_[entries - 1] = 0;  // level beyond
 }
 
+LocalContact::Piece LocalContact::piece(std::size_t i) const {
+  const double rise = angle_[i + 1] - angle_[i], first = slope_[i] * step, second = slope_[i + 1] * step;
+  return {angle_[i], first, 3 * rise - 2 * first - second, first + second - 2 * rise};
+}
+
 // Cubic pieces over y, level beyond the last entry.
 template <Number X>
 X LocalContact::unequal(const X& spread) const {
-  constexpr double step = last_y / (entries - 1);
   const X y = spread / (1 + spread);
   if (!(value_of(y) < last_y)) return X(angle_.back());
   const auto i = static_cast<std::size_t>(value_of(y) / step);
   const X t = y * (1 / step) - static_cast<double>(i);
-  const double a = angle_[i], b = angle_[i + 1];
-  const double rise = b - a, first = slope_[i] * step, second = slope_[i + 1] * step;
-  const double bend = 3 * rise - 2 * first - second, twist = first + second - 2 * rise;
-  return a + t * (first + t * (bend + t * twist));
+  const auto [at, first, bend, twist] = piece(i);
+  return at + t * (first + t * (bend + t * twist));
 }
 
 // In the variable y of the table. What lies between two knots is a cubic, inside the hull of its Bernstein
-// coefficients, whose slope is inside that of their differences.
+// coefficients, whose slope is inside that of their differences, and whose second derivative is linear.
 LocalContact::Unequal LocalContact::unequal_within(const Interval& spread) const {
-  constexpr double step = last_y / (entries - 1);
   const auto y_of = [](double s) { return s < 1e300 ? s / (1 + s) : 1; };
   const double begin = y_of(std::max(0.0, spread.lo)), end = y_of(std::max(0.0, spread.hi));
-  if (begin >= last_y) return {angle_.back(), 0};
+  if (begin >= last_y) return {angle_.back()};
   const auto sample = [&](double y) {
     Jet<double, 1> spread_here(y / (1 - y));
     spread_here.slope = {1};
     const Jet<double, 1> a = unequal(spread_here);
     return std::array{a.value, a.slope[0] / ((1 - y) * (1 - y))};  // d/dy = d/ds (1 + s)^2
   };
-  Unequal all{Interval(sample(begin)[0]), 0};
+  Unequal all{Interval(sample(begin)[0])};
   if (end >= last_y) all.angle = hull(all.angle, angle_.back());
   for (double a = begin; a < std::min(end, last_y * (1 - 1e-12));) {
-    const double knot = step * (std::floor(a / step + 1e-9) + 1), b = std::min({knot, end, last_y * (1 - 1e-12)});
+    const double index = std::floor(a / step + 1e-9);
+    const double knot = step * (index + 1), b = std::min({knot, end, last_y * (1 - 1e-12)});
     const auto [at_a, slope_a] = sample(a);
     const auto [at_b, slope_b] = sample(b);
     const double third = (b - a) / 3, second = at_a + slope_a * third, fourth = at_b - slope_b * third;
     for (const double control : {at_a, second, fourth, at_b}) all.angle = hull(all.angle, control);
     for (const double slope : {slope_a, b > a ? (fourth - second) / third : 0, slope_b})
       all.steepest = std::max(all.steepest, std::fabs(slope));
+    const Piece here = piece(static_cast<std::size_t>(index));
+    for (const double y : {a, b})
+      all.bent = std::max(all.bent, std::fabs(2 * here.bend + 6 * here.twist * (y / step - index)) / (step * step));
     if (b != knot) break;
     a = b;
   }
-  // dy/ds = (1 - y)^2; rounding, and that of the knots at which pieces begin
-  return {{all.angle.lo - 1e-9, all.angle.hi + 1e-9}, all.steepest * (1 - begin) * (1 - begin) * (1 + 1e-6) + 1e-9};
-}
-
-double LocalContact::steepest(const Interval& spread) const { return radii_ ? unequal_within(spread).steepest : 0; }
-
-double LocalContact::steepest_by_crowd(const Interval& crowd) const {
-  return density_ && crowd.hi > 2 ? 2 * std::fabs(dense_factor_) * (crowd.hi - 2) : 0;
-}
-
-Interval LocalContact::range() const {
-  return within({0, std::numeric_limits<double>::infinity()}, {1, std::numeric_limits<double>::infinity()});
+  // dy/ds = (1 - y)^2, d^2y/ds^2 = -2 (1 - y)^3; rounding, and that of the knots at which pieces begin
+  const double left = 1 - begin, by_y = left * left;
+  const double bent = all.bent * by_y * by_y + 2 * all.steepest * by_y * left;
+  return {
+      {all.angle.lo - 1e-9, all.angle.hi + 1e-9}, all.steepest * by_y * (1 + 1e-6) + 1e-9, bent * (1 + 1e-6) + 1e-9};
 }
 
 // Falls with the crowd beyond 2.
-Interval LocalContact::within(const Interval& spread, const Interval& crowd) const {
-  Interval alpha = contact_;
-  if (radii_) alpha += unequal_within(spread).angle;
-  if (!density_) return alpha;
+LocalContact::Within LocalContact::within(const Interval& spread, const Interval& crowd) const {
+  Within all{contact_};
+  if (radii_) {
+    const Unequal unequal = unequal_within(spread);
+    all.alpha += unequal.angle;
+    all.by_spread = unequal.steepest;
+    all.by_spread_twice = unequal.bent;
+  }
+  if (!density_) return all;
+  if (crowd.hi > 2) {
+    all.by_crowd_twice = 2 * std::fabs(dense_factor_);
+    all.by_crowd = all.by_crowd_twice * (crowd.hi - 2);
+  }
   const auto dense = [&](double k) { return k > 2 ? dense_factor_ * (k - 2) * (k - 2) : 0; };
-  alpha = {alpha.lo + dense(crowd.hi), alpha.hi + dense(crowd.lo)};
-  return {std::max(least_, alpha.lo) - 1e-12, std::max(least_, alpha.hi) + 1e-12};
+  const Interval alpha{all.alpha.lo + dense(crowd.hi), all.alpha.hi + dense(crowd.lo)};
+  all.may_be_least = !(alpha.lo > least_);
+  all.alpha = {std::max(least_, alpha.lo) - 1e-12, std::max(least_, alpha.hi) + 1e-12};
+  return all;
 }
 
 // crowd = (f e^(n-1))^((m-1)/(m-n)), e = near^(-1/(m-1)), m the near degree: k equal points give k.
 template <Number X>
 X LocalContact::crowd_at(const X& field, const X& near_field) const {
-  constexpr double m = near_degree;
-  const double n = kernel_.degree, share = (n - 1) / (m - 1), exponent = (m - 1) / (m - n);
+  const double share = crowd_share(), exponent = crowd_exponent();
   // below, quotients of the near field lose their digits; that far away C no longer depends on the angle
   constexpr double smallest_near_field = 1e-250;
   const double near = value_of(near_field);

@@ -53,19 +53,28 @@ class LocalContact {
   HessianJet at(const HessianJet& field, const HessianJet& spread, const HessianJet& near_field) const;
   /// How many equal skeletons would make this neighbourhood; 1 where it does not tell.
   double crowd(const Neighbourhood&) const;
-  /// All angles there may be, and those with a spread and a crowd within bounds. [the cubic pieces lie in the hull of
-  /// their control points]
-  Interval range() const;
-  Interval within(const Interval& spread, const Interval& crowd) const;
-  /// Largest |d alpha / d spread| and |d alpha / d crowd| within bounds.
-  double steepest(const Interval& spread) const;
-  double steepest_by_crowd(const Interval& crowd) const;
+  /// All angles there may be.
+  const Interval& range() const { return range_; }
+  /// All with a spread and a crowd within bounds, and the largest first and second derivatives by these there, but
+  /// where `least` takes over. [the cubic pieces lie in the hull of their control points]
+  struct Within {
+    Interval alpha;
+    double by_spread = 0, by_spread_twice = 0, by_crowd = 0, by_crowd_twice = 0;
+    bool may_be_least = false;
+  };
+  Within within(const Interval& spread, const Interval& crowd) const;
+  /// crowd = (field near_field^-share)^exponent.
+  double crowd_share() const { return (kernel_.degree - 1) / (near_degree - 1.0); }
+  double crowd_exponent() const { return (near_degree - 1.0) / (near_degree - kernel_.degree); }
 
  private:
+  // The table runs over y = s / (1 + s), s the spread, up to a ratio of radii of e^3.
   static constexpr std::size_t entries = 17;
+  static constexpr double last_y = 0.9, step = last_y / (entries - 1);
 
   double crowd_of_ring() const;
   void make_table();
+  void fit_ring();
   template <Number X>
   X unequal(const X& spread) const;
   template <Number X>
@@ -74,8 +83,13 @@ class LocalContact {
   X angle(const X& field, const X& spread, const X& near_field) const;
   struct Unequal {
     Interval angle;
-    double steepest = 0;
+    double steepest = 0, bent = 0;
   };
+  // Between two entries, over t in [0, 1].
+  struct Piece {
+    double at, first, bend, twist;
+  };
+  Piece piece(std::size_t) const;
   Unequal unequal_within(const Interval& spread) const;
 
   Kernel kernel_;
@@ -85,6 +99,7 @@ class LocalContact {
   double contact_, least_;
   double dense_factor_ = 0;
   std::array<double, entries> angle_{}, slope_{};
+  Interval range_;
 };
 
 /// The radius by which a skeleton counts in the spread.

@@ -46,6 +46,15 @@ FieldWeight weight_of(const SumBounds::Part& part, double rho) {
   return weight;
 }
 
+LogWeight log_of_sum(const Vec3d& common, std::span<const MeanTerm> terms) {
+  double least = 0, bend = 0;
+  for (const MeanTerm& t : terms) {
+    least += t.weight.lo;
+    bend += t.bend;
+  }
+  return {common, least > 0 ? bend / least * (1 + middle_is_off) : inf};
+}
+
 MeanTerm term_of_all(const SumBounds::Part& part) {
   return {.weight = part.f, .slope = part.steepest, .bend = part.bent};
 }

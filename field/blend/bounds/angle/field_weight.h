@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "field/blend/bounds/angle/mean_bounds.h"
 #include "field/blend/bounds/sum/sum_bounds.h"
@@ -13,7 +14,7 @@ inline constexpr double middle_is_off = 1e-9;  ///< roundings of what is known i
 /// ln f where f is above 0 and falls with powers of distances.
 struct LogWeight {
   Vec3d slope{};    ///< in the middle
-  double bend = 0;  ///< |D^2 ln f| in the ball, at most
+  double bend = 0;  ///< |D^2 ln f| in the ball, at most; infinite where nothing is known
 };
 
 /// In a ball of `rho` around the middle.
@@ -32,6 +33,9 @@ struct FieldWeight {
 /// variance of their grad ln, has a length of at most m / d^2 + m^2 / d^2 - |grad ln f|^2.   [tracing 3.1]
 /// Of others as of the part.
 FieldWeight weight_of(const SumBounds::Part&, double rho);
+/// Of the sum of fields, from their terms without the common factor; `common` is the slope of the logarithm of the sum
+/// in the middle. Of positive functions |D^2 ln sum w| is at most the mean of |D^2 ln w| + |grad ln w - common|^2.
+LogWeight log_of_sum(const Vec3d& common, std::span<const MeanTerm>);
 /// For which all of the skeleton counts that lies at different values.
 MeanTerm term_of_all(const SumBounds::Part&);
 /// Of a mean over the skeleton of values no farther from each other than `range`. Of an integral as above.

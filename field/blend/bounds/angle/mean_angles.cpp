@@ -23,27 +23,6 @@ using Parts = std::vector<SumBounds::Part>;
 
 const Vec3<Interval> any_gradient{Interval::everything(), Interval::everything(), Interval::everything()};
 
-// From the middle to anywhere in the box, or on the stretch.
-AngleBounds around(const AlphaSample& middle, const MeanChange& change, const Interval& range, const SumBounds& sum) {
-  const double most = change.slope, rho = sum.rho(), off = middle_is_off * most;
-  AngleBounds bounds{range, any_gradient};
-  if (!(most < Box3::inf)) return bounds;
-  const bool is_bend_known = change.bend < Box3::inf;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double by = is_bend_known ? change.bend * rho + off : 2 * most;
-    bounds.gradient[k] = clamped({middle.gradient[k] - by, middle.gradient[k] + by}, {-most, most});
-  }
-  double by = most * rho;
-  if (is_bend_known) {
-    double first = length(middle.gradient) * rho;
-    if (const Stretch* way = sum.stretch())
-      first = std::min(first, std::fabs(dot(middle.gradient, way->half)) + length(middle.gradient) * way->slack);
-    by = std::min(by, first * (1 + middle_is_off) + (0.5 * change.bend * rho + off) * rho);
-  }
-  bounds.value = clamped({middle.value - by - 1e-12, middle.value + by + 1e-12}, range);
-  return bounds;
-}
-
 // Of ln f in the middle; 0 where not all weights are known by their logarithms.
 Vec3d common_slope(const Parts& parts) {
   Vec3d slope{};
@@ -137,7 +116,7 @@ AngleBounds by_skeletons(const BlendField& blend, const SumBounds& sum, const Pa
     terms.back().apart =
         std::max(std::fabs(angles.lo - middle.value), std::fabs(angles.hi - middle.value)) + middle_is_off;
   });
-  return around(middle, mean_change(terms, range.width(), sum.rho()), range, sum);
+  return angles_around(middle, mean_change(terms, range.width(), sum.rho()), range, sum);
 }
 
 // Points and triangles have no direction. `weighted`: the direction times the field in the middle.
@@ -191,9 +170,9 @@ std::optional<AngleBounds> by_directions(const BlendField& blend, const SumBound
   const Interval range = direction_range(blend);
   const AlphaSample middle = alpha_of_directions(blend, parts, directions);
   // Of one strand alone the angle is that of parallel ones, everywhere; which of several is alone may change.
-  if (ordered.size() == 1) return around({.value = middle.value}, {}, range, sum);
+  if (ordered.size() == 1) return angles_around({.value = middle.value}, {}, range, sum);
   if (ordered.empty() || !(ordered[1].weight.value > vanishing * total)) return {};
-  return around(middle, angle_change(ordered, middle.value, range.width(), sum.rho()), range, sum);
+  return angles_around(middle, angle_change(ordered, middle.value, range.width(), sum.rho()), range, sum);
 }
 
 std::optional<AngleBounds> of_parts(const BlendField& blend, const SumBounds& sum, const Parts& parts) {

@@ -135,13 +135,11 @@ Vec3d StrandTerms::common_slope() const {
   return slopes / value_;
 }
 
-// Of positive functions |D^2 ln sum w| is at most the mean of |D^2 ln w| + |grad ln w - c|^2.
 FieldWeight StrandTerms::weight(const Vec3d& common, const std::vector<MeanTerm>& terms) const {
+  if (is_log_) return {.value = value_, .log = log_of_sum(common, terms)};
   MeanTerm all{};
   for (const MeanTerm& term : terms) add_weight(all, term);
-  if (!is_log_) return {.value = value_, .f = all.weight, .steepest = all.slope, .bent = all.bend};
-  const double bend = all.weight.lo > 0 ? all.bend / all.weight.lo * (1 + middle_is_off) : inf;
-  return {.value = value_, .log = LogWeight{common, bend}};
+  return {.value = value_, .f = all.weight, .steepest = all.slope, .bent = all.bend};
 }
 
 bool StrandTerms::is_straight() const {

@@ -6,10 +6,6 @@
 
 namespace marrow {
 
-constexpr int dimension_of(const TriangleSkeleton&) { return 2; }
-constexpr int dimension_of(const SegmentSkeleton&) { return 1; }
-constexpr int dimension_of(const ArcSkeleton&) { return 1; }
-
 /// Of its integral, anywhere in the ball of `rho` around the center, which may hold the skeleton itself.
 double least_field(const SegmentSkeleton&, const Profile&, const Vec3d& center, double rho);
 double least_field(const ArcSkeleton&, const Profile&, const Vec3d& center, double rho);

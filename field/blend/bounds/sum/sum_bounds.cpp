@@ -39,7 +39,7 @@ SumBounds::SumBounds(const Box3& box, const Within& within)
 SumBounds::SumBounds(const BlendField& blend, const Box3& box, Wanted wanted, const Within& within)
     : SumBounds(box, within) {
   has_gradient_ = wanted == Wanted::Slopes;
-  keeps_parts_ = blend.alpha_per_skeleton || !blend.direction_bounds.empty();
+  keeps_parts_ = blend.alpha_per_skeleton || !blend.direction_bounds.empty() || blend.local_contact;
   if (blend.kernel == KernelFamily::Inverse) add_inverse(blend);
   if (blend.kernel == KernelFamily::Cauchy) add_cauchy(blend);
   if (blend.kernel == KernelFamily::Compact) add_compact(blend);
