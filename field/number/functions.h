@@ -192,14 +192,28 @@ X log(const X& x) {
   return X::chain(x, log(x.value), r, -r * r);
 }
 template <JetNumber X>
-X sin(const X& x) {
+struct JetSinCos {
+  X sin, cos;
+};
+template <JetNumber X>
+JetSinCos<X> sincos(const X& x) {
   const auto w = sincos(x.value);
-  return X::chain(x, w.sin, w.cos, -w.sin);
+  return {X::chain(x, w.sin, w.cos, -w.sin), X::chain(x, w.cos, -w.sin, -w.cos)};
+}
+template <JetNumber X>
+X sin(const X& x) {
+  return sincos(x).sin;
 }
 template <JetNumber X>
 X cos(const X& x) {
-  const auto w = sincos(x.value);
-  return X::chain(x, w.cos, -w.sin, -w.cos);
+  return sincos(x).cos;
+}
+/// For |x| < 1, where slopes are finite.
+template <JetNumber X>
+X asin(const X& x) {
+  using T = typename X::Scalar;
+  const T rest = (T(1.0) - x.value) * (T(1.0) + x.value), slope = T(1.0) / sqrt(rest);
+  return X::chain(x, asin(x.value), slope, x.value * slope / rest);
 }
 template <JetNumber X>
 X atan(const X& x) {

@@ -121,6 +121,10 @@ inline Interval log(const Interval& a) {
   if (a.hi <= 0) return Interval::everything();
   return {a.lo > 0 ? rounding::down(log(a.lo), 2) : -rounding::inf, rounding::up(log(a.hi), 2)};
 }
+/// Of the part within [-1, 1]; beyond it, of the nearest end.
+inline Interval asin(const Interval& a) {
+  return increasing(clamped(a, {-1, 1}), [](double x) { return asin(x); });
+}
 inline Interval atan(const Interval& a) {
   return increasing(a, [](double x) { return atan(x); });
 }

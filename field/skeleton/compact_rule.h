@@ -62,22 +62,6 @@ Reach<X> reach_along(const LineOf<X>& line, double R) {
 
 namespace compact_rule {
 
-inline SinCos sine_and_cosine(double x) { return sincos(x); }
-template <class X>
-struct SinCosOf {
-  X sin, cos;
-};
-template <class X>
-SinCosOf<X> sine_and_cosine(const X& x) {
-  return {sin(x), cos(x)};
-}
-inline double arcsine(double x) { return asin(x); }
-template <class X>
-X arcsine(const X& x) {
-  const double rest = (1 - x.value) * (1 + x.value), slope = 1 / std::sqrt(rest);
-  return X::chain(x, asin(x.value), slope, x.value * slope / rest);
-}
-
 // Calls at(x, dx) with nodes x of [a, b], which move as a and b do: `nodes` calls its argument with those of values.
 template <class X, class Nodes, class At>
 void moving(const X& a, const X& b, const Nodes& nodes, const At& at) {
@@ -111,7 +95,7 @@ void between_roots(const LineOf<X>& line, const X& from, const X& to, const X& b
   const auto angle_of = [&](const X& t) {
     const X sine = (t - middle) / half;
     if (!(std::fabs(value_of(sine)) < 1)) return X(std::copysign(std::numbers::pi / 2, value_of(sine)));
-    return arcsine(sine);
+    return asin(sine);
   };
   std::array<Singularity, 1> pole{Singularity{0, std::numeric_limits<double>::infinity()}};
   if (line.slope != 0) {
@@ -126,7 +110,7 @@ void between_roots(const LineOf<X>& line, const X& from, const X& to, const X& b
                    [&](const Panel& panel) { for_each_node(panel, max_kernel_degree, at); });
   };
   moving(a, b, nodes, [&](const X& angle, const X& weight) {
-    const auto [sine, cosine] = sine_and_cosine(angle);
+    const auto [sine, cosine] = sincos(angle);
     visit(middle + half * sine, weight * half * cosine);
   });
 }

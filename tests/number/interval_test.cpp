@@ -65,6 +65,7 @@ const Unary unary[] = {
     {"sqrt", [](const Interval& x) { return sqrt(x); }, [](Precise x) { return sqrt(x); }, 0, 4},
     {"exp", [](const Interval& x) { return exp(x); }, [](Precise x) { return exp(x); }, -inf, 8},
     {"log", [](const Interval& x) { return log(x); }, [](Precise x) { return log(x); }, tiny, 8},
+    {"asin", [](const Interval& x) { return asin(x); }, [](Precise x) { return asin(min(max(x, -1), 1)); }, -inf, 8},
     {"atan", [](const Interval& x) { return atan(x); }, [](Precise x) { return atan(x); }, -inf, 8},
     {"sin", [](const Interval& x) { return sin(x); }, [](Precise x) { return sin(x); }, -inf, 8},
     {"cos", [](const Interval& x) { return cos(x); }, [](Precise x) { return cos(x); }, -inf, 8},

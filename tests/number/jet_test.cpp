@@ -87,6 +87,15 @@ TEST(Jet, SmoothFunctions) {
   expect_lawful(
       "log", []<class X>(X x, X y, X z) { return log(X(6.0) + x) * y + z; }, 0);
   expect_lawful(
+      "sincos",
+      [](auto x, auto y, auto z) {
+        const auto [sine, cosine] = sincos(x * y);
+        return sine * z + cosine;
+      },
+      0);
+  expect_lawful(
+      "asin", [](auto x, auto y, auto z) { return asin(0.9 * sin(x * y)) * z; }, 0);
+  expect_lawful(
       "sin and cos", [](auto x, auto y, auto z) { return sin(x * y) * cos(z + y); }, 0);
   expect_lawful(
       "atan", [](auto x, auto y, auto z) { return atan(x * y) + atan(z); }, 0);

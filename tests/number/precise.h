@@ -42,6 +42,7 @@ constexpr Precise square(Precise x) { return x * x; }
 inline Precise sqrt(Precise x) { return Precise::of(std::sqrt(x.v)); }
 inline Precise exp(Precise x) { return Precise::of(std::exp(x.v)); }
 inline Precise log(Precise x) { return Precise::of(std::log(x.v)); }
+inline Precise asin(Precise x) { return Precise::of(std::asin(x.v)); }
 inline Precise atan(Precise x) { return Precise::of(std::atan(x.v)); }
 inline Precise sin(Precise x) { return Precise::of(std::sin(x.v)); }
 inline Precise cos(Precise x) { return Precise::of(std::cos(x.v)); }
