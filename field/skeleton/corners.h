@@ -1,4 +1,4 @@
-// Places of a triangle by the shares of its corners; internal to skeleton/.
+// Places of a triangle by the shares of its corners, and what is linear over it.
 #pragma once
 
 #include <array>
@@ -20,6 +20,11 @@ struct Corners {
     normal = cross(a, b);
     area2 = length_squared(normal);
     dual = {cross(b, normal) / area2, cross(normal, a) / area2};
+  }
+
+  /// Of what is linear over the triangle, by what it is at the corners; in the plane.
+  Vec3d gradient_of(const std::array<double, 3>& at) const {
+    return dual[0] * (at[1] - at[0]) + dual[1] * (at[2] - at[0]);
   }
 };
 

@@ -81,7 +81,7 @@ struct PlaneNearest {
 PlaneNearest nearest_in_plane(const TriangleSkeleton& s, const Vec3d& p) {
   const Corners corners(s);
   const auto& dual = corners.dual;
-  const Vec3d rise = dual[0] * (s.radii[1] - s.radii[0]) + dual[1] * (s.radii[2] - s.radii[0]);
+  const Vec3d rise = corners.gradient_of(s.radii);
   const Vec3d n = corners.normal / std::sqrt(corners.area2), from_corner = p - s.vertices[0];
   const double height = dot(from_corner, n);
   const Vec3d over = n * height, foot = from_corner - over;

@@ -66,7 +66,7 @@ Place place_on(const SegmentSkeleton& s, const Vec3d& p) {
 std::optional<Place> place_in_plane(const TriangleSkeleton& s, const Vec3<X>& p) {
   const Corners corners(s);
   const auto& [normal, area2, dual] = corners;
-  const Vec3d rise = dual[0] * (s.radii[1] - s.radii[0]) + dual[1] * (s.radii[2] - s.radii[0]);
+  const Vec3d rise = corners.gradient_of(s.radii);
   const Vec3<X> from = p - s.vertices[0];
   const X over = dot(from, normal);
   const Vec3<X> above = constant<X>(normal / area2) * over, foot = from - above;

@@ -58,19 +58,16 @@ double place_slope(const SegmentSkeleton& s, bool by_distance, const Interval& e
 double angle_slope(const PrimitiveList<TriangleSkeleton>& list, std::size_t i, const SumBounds::Part& part) {
   const TriangleSkeleton& s = list.skeletons[i];
   const Corners corners(s);
-  const auto gradient = [&](double first, double second, double third) {
-    return length(corners.dual[0] * (second - first) + corners.dual[1] * (third - first));
-  };
   const double first = list.alphas[i], second = list.alphas_to.empty() ? first : list.alphas_to[i];
   const double third = list.alphas_third.empty() ? first : list.alphas_third[i];
-  const double k = gradient(s.radii[0], s.radii[1], s.radii[2]), e = part.scaled.hi;
+  const double k = length(corners.gradient_of(s.radii)), e = part.scaled.hi;
   double speed = k * part.scaled.lo > 1 ? 0 : k * e < 1 ? (1 + middle_is_off) / (1 - k * k * e * e) : Box3::inf;
   for (std::size_t from = 0; from < 3; ++from) {
     const std::size_t to = (from + 1) % 3;
     const SegmentSkeleton side{s.vertices[from], s.vertices[to], s.radii[from], s.radii[to]};
     speed = std::max(speed, place_slope(side, true, part.scaled) * length(side.to - side.from));
   }
-  return gradient(first, second, third) * speed;
+  return length(corners.gradient_of({first, second, third})) * speed;
 }
 double angle_slope(const PrimitiveList<ArcSkeleton>& list, std::size_t i, const SumBounds::Part& part) {
   const ArcSkeleton& s = list.skeletons[i];

@@ -65,7 +65,7 @@ struct InPlane {
 std::optional<InPlane> place_in_plane(const TriangleSkeleton& s, const Box3& box) {
   const Corners corners(s);
   const auto& dual = corners.dual;
-  const Vec3d rise = dual[0] * (s.radii[1] - s.radii[0]) + dual[1] * (s.radii[2] - s.radii[0]);
+  const Vec3d rise = corners.gradient_of(s.radii);
   const Vec3d n = corners.normal / std::sqrt(corners.area2);
   const Span from_corner = span_of(box, s.vertices[0]);
   const Interval height = along(from_corner, n), height_squared = square(height);

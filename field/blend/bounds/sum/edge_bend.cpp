@@ -127,7 +127,7 @@ struct Strip {
 
 Strip strip_of(const TriangleSkeleton& s, double R, const Vec3d& p, double rho) {
   const Corners corners(s);
-  const Vec3d rise = corners.dual[0] * (s.radii[1] - s.radii[0]) + corners.dual[1] * (s.radii[2] - s.radii[0]);
+  const Vec3d rise = corners.gradient_of(s.radii);
   const double steep = length(rise), open = 1 - square(R * steep * more);
   if (steep == 0) {
     const double reach = R * s.radii[0];

@@ -93,7 +93,7 @@ double share_crossing(const ArcSkeleton& s, const Vec3d& p, double rho, double R
 // the slope of the radius and c = R radius_f + by.
 double share_crossing(const TriangleSkeleton& s, const Vec3d& p, double rho, double R, bool) {
   const Corners corners(s);
-  const Vec3d rise = corners.dual[0] * (s.radii[1] - s.radii[0]) + corners.dual[1] * (s.radii[2] - s.radii[0]);
+  const Vec3d rise = corners.gradient_of(s.radii);
   const Vec3d from_corner = p - s.vertices[0];
   const double open = 1 - R * R * length_squared(rise), slack = slack_of(s, rho);
   const double h2 = square(dot(from_corner, corners.normal)) / corners.area2;
