@@ -6,6 +6,7 @@
 
 #include "field/math/elementary.h"
 #include "field/number/functions.h"
+#include "field/skeleton/moment_sample.h"
 
 namespace marrow {
 namespace {
@@ -87,12 +88,8 @@ void CompactChords::add(const Line& line, const Vec3d& across, const UnitVec3& u
   sum.value += weight * value;
   sum.si_gradient += si;
   if constexpr (Order >= Derivatives::First) sum.gradient += si / tau;
-  if constexpr (Order >= Derivatives::Second) {
-    const double b = -(m - 2) / (R * R * tau * tau) * k;
-    sum.si_jacobian += Matrix3::scaled_identity(k * slope[0]) +
-                       Matrix3::outer(across, across * (b * bend[0]) - u * (b * bend[1])) +
-                       Matrix3::outer(u.vec(), u * (b * bend[2]) - across * (b * bend[1]));
-  }
+  if constexpr (Order >= Derivatives::Second)
+    sum.si_jacobian += si_jacobian_of(k * slope[0], -(m - 2) / (R * R * tau * tau) * k, bend, u, across);
 }
 
 template void CompactChords::add<Derivatives::ScaleInvariant>(const Line&, const Vec3d&, const UnitVec3&, double,
