@@ -8,6 +8,7 @@
 #include <limits>
 #include <span>
 
+#include "field/kernel/inverse_family.h"
 #include "field/math/gauss_rule.h"
 
 namespace marrow {
@@ -94,6 +95,16 @@ void for_each_node(const Panel& panel, int polynomial_degree, const Visit& visit
   if (panel.distance >= panel_distance_8 * panel.length && polynomial_degree < 8) with(gauss_rule<8>);
   else if (panel.distance >= panel_distance_12 * panel.length && polynomial_degree < 12) with(gauss_rule<12>);
   else with(gauss_rule<20>);
+}
+
+/// Calls visit(angle, weight) at nodes over [first, last], within a right angle of 0, for powers of the cosine with a
+/// pole besides. Up to the 16th power a rule of 20 nodes does for a right angle (6e-16), up to the 24th for a length of
+/// 1.
+template <class Visit>
+void for_each_angle(double first, double last, const Singularity& pole, int power, const Visit& visit) {
+  const double longest = power <= 16 ? 1.6 : 1;
+  for_each_panel(first, last, {&pole, 1}, longest,
+                 [&](const Panel& panel) { for_each_node(panel, max_kernel_degree, visit); });
 }
 
 }  // namespace marrow

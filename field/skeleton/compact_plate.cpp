@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-#include "field/kernel/inverse_family.h"
+#include "field/kernel/panels.h"
 #include "field/kernel/profile.h"
 #include "field/math/elementary.h"
 
@@ -47,17 +47,14 @@ struct SideIntegrals {
 
 // Calls visit(t, dt, sqrt(g)). Beyond the chord's ends integrands have poles where the border is at no distance from
 // the foot in the complex plane: sin(angle) = +-i inside / half. From the foot they have them where
-// g^(1/2) = -c^(1/2): no nearer than a right angle. For such a panel 20 nodes take powers of the cosine up to the 16th
-// (6e-16), all others for one of length 1.
+// g^(1/2) = -c^(1/2): no nearer than a right angle.
 template <class Visit>
 void for_each_node_of(const Chord& chord, const Side& side, const Disc& disc, const Visit& visit) {
-  const double longest = disc.m + 3 <= 16 ? 1.6 : 1, root_of_g = chord.half / std::sqrt(disc.R2);
+  const double root_of_g = chord.half / std::sqrt(disc.R2);
   const Singularity pole{0, disc.from_foot ? 2 : asinh(std::fabs(side.inside) / chord.half)};
-  for_each_panel(chord.first_angle, chord.last_angle, {&pole, 1}, longest, [&](const Panel& panel) {
-    for_each_node(panel, max_kernel_degree, [&](double angle, double weight) {
-      const auto [sine, cosine] = sincos(angle);
-      visit(chord.half * sine, weight * chord.half * cosine, root_of_g * cosine);
-    });
+  for_each_angle(chord.first_angle, chord.last_angle, pole, disc.m + 3, [&](double angle, double weight) {
+    const auto [sine, cosine] = sincos(angle);
+    visit(chord.half * sine, weight * chord.half * cosine, root_of_g * cosine);
   });
 }
 

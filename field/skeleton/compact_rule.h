@@ -86,8 +86,7 @@ void along(const X& begin, const X& length, std::span<const Singularity> places,
 }
 
 // Both ends are roots or near one: with t = middle + half sin(angle) half powers of E are powers of the cosine. Of a
-// kernel of degree n the power is n + 1 at most, and derivatives and dt add four. Up to the 16th the rule of 20 nodes
-// does for half a turn in two panels (6e-16), up to the 24th for one of length 1.
+// kernel of degree n the power is n + 1 at most, and derivatives and dt add four.
 template <class X, class Visit>
 void between_roots(const LineOf<X>& line, const X& from, const X& to, const X& begin, const X& end, int degree,
                    const Visit& visit) {
@@ -97,18 +96,13 @@ void between_roots(const LineOf<X>& line, const X& from, const X& to, const X& b
     if (!(std::fabs(value_of(sine)) < 1)) return X(std::copysign(std::numbers::pi / 2, value_of(sine)));
     return asin(sine);
   };
-  std::array<Singularity, 1> pole{Singularity{0, std::numeric_limits<double>::infinity()}};
+  Singularity pole{0, std::numeric_limits<double>::infinity()};
   if (line.slope != 0) {
     const double at = (-value_of(line.at_foot) / line.slope - value_of(middle)) / value_of(half);
-    pole[0] = {std::copysign(std::numbers::pi / 2, at), acosh(std::max(1.0, std::fabs(at)))};
+    pole = {std::copysign(std::numbers::pi / 2, at), acosh(std::max(1.0, std::fabs(at)))};
   }
   const X a = angle_of(begin), b = angle_of(end);
-  const double first = value_of(a), last = value_of(b);
-  const int power = degree + 5;
-  const auto nodes = [&](const auto& at) {
-    for_each_panel(first, last, pole, power <= 16 ? 1.6 : 1,
-                   [&](const Panel& panel) { for_each_node(panel, max_kernel_degree, at); });
-  };
+  const auto nodes = [&](const auto& at) { for_each_angle(value_of(a), value_of(b), pole, degree + 5, at); };
   moving(a, b, nodes, [&](const X& angle, const X& weight) {
     const auto [sine, cosine] = sincos(angle);
     visit(middle + half * sine, weight * half * cosine);
