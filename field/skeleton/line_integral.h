@@ -6,6 +6,7 @@
 #include "field/kernel/panels.h"
 #include "field/kernel/profile.h"
 #include "field/skeleton/compact_rule.h"
+#include "field/skeleton/reach.h"
 #include "field/skeleton/skeleton_sample.h"
 
 namespace marrow {
@@ -22,8 +23,6 @@ void add_source(const Profile& profile, const Vec3d& v, double tau, double weigh
     sum.si_jacobian +=
         Matrix3::scaled_identity(k) + Matrix3::outer(v, v) * (4 * weight * curvature / (tau * tau * tau));
 }
-
-using Line = LineOf<double>;
 
 // tau^2 + s^2 (t^2 + h^2) = 0.
 inline Singularity of_cauchy(const Line& line, double s) {

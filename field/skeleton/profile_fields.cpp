@@ -1,5 +1,6 @@
 // Points and segments under the Cauchy and the compact kernel; shares of segments under any.
 #include "field/skeleton/compact_chord.h"
+#include "field/skeleton/line_integral.h"
 #include "field/skeleton/seen_line.h"
 #include "field/skeleton/shares.h"
 #include "field/skeleton/skeletons.h"

@@ -8,6 +8,7 @@
 
 #include "field/skeleton/compact_line.h"
 #include "field/skeleton/differences.h"
+#include "field/skeleton/line_integral.h"
 #include "field/skeleton/second_order_source.h"
 #include "field/skeleton/seen_line.h"
 #include "field/skeleton/skeletons.h"

@@ -1,7 +1,8 @@
-// A segment as a line seen from a point; internal to skeleton/.
+// A segment as a line seen from a point.
 #pragma once
 
-#include "field/skeleton/line_integral.h"
+#include "field/description/field_node.h"
+#include "field/skeleton/reach.h"
 
 namespace marrow {
 

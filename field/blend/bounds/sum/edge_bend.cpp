@@ -19,6 +19,8 @@
 #include "field/skeleton/corners.h"
 #include "field/skeleton/parts.h"
 #include "field/skeleton/radii.h"
+#include "field/skeleton/reach.h"
+#include "field/skeleton/seen_line.h"
 
 namespace marrow {
 namespace {
@@ -101,16 +103,13 @@ double integral_along(const ArcSkeleton& s, double R, const Vec3d& p, double rho
 // asin(sqrt(e)) in all. Here: both ends, as from p to places within `step`.
 double roots_moved(const SegmentSkeleton& s, double R, const Vec3d& p, double step) {
   constexpr double all = 2 * pi;
-  const double along = length(s.to - s.from), slope = (s.radius_to - s.radius_from) / along;
-  const double open = 1 - square(R * slope);
-  const Vec3d u = (s.to - s.from) / along, from_start = p - s.from;
-  const double foot = dot(from_start, u), at_foot = s.radius_from + slope * foot;
-  if (!(at_foot > 0)) return all;  // behind the tip roots are those of the cone's mirror image
-  const double l2 = (square(R * at_foot) - open * length_squared(from_start - u * foot)) / square(open);
-  if (!(l2 > 0)) return all;
-  // Within 2 l of the middle, which holds the roots of Q + by.
-  const double l = std::sqrt(l2), reach = R * (at_foot / open + 2 * std::fabs(slope) * l);
-  const double by = step * (2 * reach + 3 * step) * more / (open * l2);
+  const Line line = seen_from(s, p).line;
+  const Reach<double> reach = reach_along(line, R);
+  if (reach.is_empty) return all;
+  const double open = 1 - square(R * line.slope), l = reach.half_rise / open;
+  // R tau within 2 l of the middle, which holds the roots of Q + by.
+  const double largest = R * (line.at_foot / open + 2 * std::fabs(line.slope) * l);
+  const double by = step * (2 * largest + 3 * step) * more / (open * square(l));
   if (!(by < 1)) return all;
   const double inward = by / (1 + std::sqrt(1 - by));
   return std::min(all, 8 * asin(std::sqrt(std::min(1.0, inward / (2 - inward)))));
@@ -135,14 +134,15 @@ Strip strip_of(const TriangleSkeleton& s, double R, const Vec3d& p, double rho) 
   }
   Strip strip{least_radius(s), largest_radius(s), 0, open};
   if (open > 0) {
-    // u^2 + h^2 <= (c + R steep u)^2, u up from the foot, c = R radius_f + rho
+    // d <= R tau + rho, up the slope from the foot: where the support reaches with radii that are rho / R larger. A
+    // slope that is too large makes radii downhill too small, so that those at the foot are larger by twice as much.
     const Vec3d from_corner = p - s.vertices[0];
-    const double at_foot = s.radii[0] + dot(from_corner, rise), c = R * at_foot + rho;
+    const double at_foot = s.radii[0] + dot(from_corner, rise), slack = 1e-9 * strip.thick;
     const double h2 = square(dot(from_corner, corners.normal)) / corners.area2 * less;
-    const double half = std::sqrt(std::max(0.0, square(c) * more - open * h2));
-    const double slack = 1e-9 * strip.thick;
-    strip.thin = std::max(strip.thin, at_foot + steep * (R * steep * c - half) / open - slack);
-    strip.thick = std::min(strip.thick, at_foot + steep * (R * steep * c + half) / open + slack);
+    const Reach<double> reach = reach_along(Line{-inf, inf, h2, (at_foot + rho / R) * square(more), steep * more}, R);
+    if (reach.is_empty) return {inf, 0, 0, open};
+    if (reach.from) strip.thin = std::max(strip.thin, at_foot + steep * *reach.from - slack);
+    if (reach.to) strip.thick = std::min(strip.thick, at_foot + steep * *reach.to + slack);
   }
   strip.width = (strip.thick - strip.thin) / steep;
   return strip;

@@ -11,6 +11,8 @@
 #include "field/skeleton/corners.h"
 #include "field/skeleton/parts.h"
 #include "field/skeleton/radii.h"
+#include "field/skeleton/reach.h"
+#include "field/skeleton/seen_line.h"
 
 namespace marrow {
 namespace {
@@ -40,22 +42,17 @@ double share_crossing(const PointSkeleton& s, const Vec3d& p, double rho, double
   return std::fabs(length(p - s.at) - R * s.radius) <= rho * (1 + 1e-9) + 1e-12 * s.radius ? 1 : 0;
 }
 
-// d^2 = (R radius + by)^2 has the roots (R slope c +- sqrt(c^2 - (1 - R^2 slope^2) h^2)) / (1 - R^2 slope^2) from the
-// foot, c = R radius_f + by.
+// d = R radius + by is where the support reaches with radii that are by / R larger.
 double share_crossing(const SegmentSkeleton& s, const Vec3d& p, double rho, double R, bool anywhere) {
-  const double along = length(s.to - s.from), slope = (s.radius_to - s.radius_from) / along;
-  const double open = 1 - square(R * slope);
-  if (!(open > least_open)) return along / least_radius(s);
-  const Vec3d u = (s.to - s.from) / along, from_start = p - s.from;
-  const double foot = dot(from_start, u), h_squared = length_squared(from_start - u * foot);
+  const SeenLine seen = seen_from(s, p);
+  if (!(1 - square(R * seen.line.slope) > least_open)) return seen.length / least_radius(s);
   const auto chord = [&](double by) {
-    const double c = R * (s.radius_from + slope * foot) + by, under = square(c) - open * h_squared;
-    if (!(c > 0 && under > 0)) return 0.0;
-    const auto place = [&](double side) {
-      const double at = foot + (R * slope * c + side * std::sqrt(under)) / open;
-      return anywhere ? at : std::clamp(at, 0.0, along);
-    };
-    return place(1) - place(-1);
+    Line line = seen.line;
+    line.at_foot += by / R;
+    const Reach<double> reach = reach_along(line, R);
+    if (reach.is_empty) return 0.0;
+    const auto place = [&](double t) { return anywhere ? t : std::clamp(t, line.t1, line.t2); };
+    return place(*reach.to) - place(*reach.from);
   };
   const double slack = slack_of(s, rho);
   return std::max(0.0, chord(slack) - chord(-slack)) / least_radius(s);
