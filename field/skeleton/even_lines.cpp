@@ -14,8 +14,9 @@ namespace {
 // Two triangles, cut along the line through the corner of the middle radius on which the radius is that: it is the
 // base of both, and all lines parallel to it have one radius.
 struct EvenCut {
-  Vec3d middle, along;  // to the other end of that line: from differences, so that places lose no digits far out
-  double radius;
+  Vec3d middle, normal;  // that corner; of the whole triangle, as little may be left of a part
+  UnitVec3 u;            // along the base, from the corner
+  double base, radius;
   std::array<std::size_t, 2> apexes;
 
   explicit EvenCut(const TriangleSkeleton& t) {
@@ -24,19 +25,18 @@ struct EvenCut {
     radius = t.radii[by[1]];
     middle = t.vertices[by[1]];
     apexes = {by[0], by[2]};
+    const auto& v = t.vertices;
     const double thin = t.radii[by[0]], thick = t.radii[by[2]];
-    along = lerp(t.vertices[by[0]] - middle, t.vertices[by[2]] - middle, (radius - thin) / (thick - thin));
+    // To the other end of that line: from differences, so that places lose no digits far out.
+    const Vec3d along = lerp(v[by[0]] - middle, v[by[2]] - middle, (radius - thin) / (thick - thin));
+    normal = normalize(cross(v[1] - v[0], v[2] - v[0])).vec();
+    const Vec3d in_plane = along - normal * dot(along, normal);
+    base = length(in_plane);
+    u = UnitVec3::unchecked(in_plane / base);
   }
 
-  // With the normal of the whole triangle, as little may be left of a part.
   TriangleView view(const TriangleSkeleton& t, std::size_t apex, const Vec3d& p) const {
-    const auto& v = t.vertices;
-    const Vec3d side = v[apex] - middle, from_middle = p - middle;
-    const Vec3d normal = normalize(cross(v[1] - v[0], v[2] - v[0])).vec();
-    const Vec3d in_plane = along - normal * dot(along, normal);
-    const double base = length(in_plane);
-    const UnitVec3 u = UnitVec3::unchecked(in_plane / base);
-    const Vec3d w = cross(normal, u.vec());
+    const Vec3d side = t.vertices[apex] - middle, from_middle = p - middle, w = cross(normal, u.vec());
     const double turn = dot(side, w) < 0 ? -1 : 1;
     const UnitVec3 up = UnitVec3::unchecked(w * turn), out = UnitVec3::unchecked(normal * turn);
     return {.u = u,
