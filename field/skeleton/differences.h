@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "field/skeleton/radii.h"
 #include "field/skeleton/second_order.h"
 
 namespace marrow {
@@ -49,6 +50,15 @@ SecondOrderSample by_steps(const Plain& plain, double h) {
   return s;
 }
 
+inline ArcSkeleton as_seen_from(const Vec3d& p, ArcSkeleton s) {
+  s.center = s.center - p;
+  return s;
+}
+inline TriangleSkeleton as_seen_from(const Vec3d& p, TriangleSkeleton s) {
+  for (Vec3d& v : s.vertices) v = v - p;
+  return s;
+}
+
 inline double difference(const SecondOrderSample& a, const SecondOrderSample& b) {
   double sum = 0;
   for (std::size_t k = 0; k < 6; ++k) {
@@ -61,11 +71,14 @@ inline double difference(const SecondOrderSample& a, const SecondOrderSample& b)
 }  // namespace differences
 
 /// By the two neighbouring steps that agree best. Only for arcs and triangles under the compact kernel, whose edge cuts
-/// them anywhere: what the edge adds to the derivatives is not under the integral. They are seen from the point, so
-/// that small steps are exact wherever it is.
-template <class Plain>
-SecondOrderSample by_differences(const Plain& plain, double radius) {
+/// them anywhere: what the edge adds to the derivatives is not under the integral. `field(skeleton, q)` is asked for
+/// them as seen from p, with q near 0, so that small steps are exact wherever p is.
+template <class Skeleton, class Field>
+SecondOrderSample by_differences(const Skeleton& skeleton, const Vec3d& p, const Field& field) {
   using namespace differences;
+  const Skeleton seen = as_seen_from(p, skeleton);
+  const double radius = least_radius(skeleton);
+  const auto plain = [&](const Vec3d& q) { return field(seen, q); };
   constexpr double enough = 1e-9;
   double h = longest_step * radius, least = std::numeric_limits<double>::infinity();
   SecondOrderSample best, longer = by_steps(plain, h);

@@ -1,14 +1,12 @@
 // Second derivatives of integrals: those of the kernel, summed over the nodes of the same quadratures.
 #include "field/skeleton/second_order.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
+#include <cstddef>
 
 #include "field/skeleton/compact_line.h"
 #include "field/skeleton/differences.h"
 #include "field/skeleton/line_integral.h"
+#include "field/skeleton/on_skeleton.h"
 #include "field/skeleton/second_order_source.h"
 #include "field/skeleton/seen_line.h"
 #include "field/skeleton/skeletons.h"
@@ -54,16 +52,11 @@ SecondOrderSample second_order(const SegmentSkeleton& segment, const Vec3d& p, c
 }
 
 SecondOrderSample second_order(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
-  if (kernel.family == KernelFamily::Compact) {
-    const double radius = std::min({triangle.radii[0], triangle.radii[1], triangle.radii[2]});
-    TriangleSkeleton seen = triangle;
-    for (Vec3d& v : seen.vertices) v = v - p;
-    return by_differences([&](const Vec3d& q) { return triangle_field<Derivatives::Second>(seen, q, kernel); }, radius);
-  }
-  bool foot_is_inside = false;
-  const TriangleView v = best_view(triangle, p, foot_is_inside);
-  if (kernel.family == KernelFamily::Inverse && foot_is_inside && v.p_normal == 0)
-    return SecondOrderSample::on_skeleton();
+  if (kernel.family == KernelFamily::Compact)
+    return by_differences(triangle, p, [&](const TriangleSkeleton& seen, const Vec3d& q) {
+      return triangle_field<Derivatives::Second>(seen, q, kernel);
+    });
+  if (is_on(triangle, p, kernel)) return SecondOrderSample::on_skeleton();
   const Profile profile(kernel, 2);
   return limited(integrate_triangle<Sum>(triangle, p, kernel, [&](const Vec3d& w, double tau, double weight, Sum& sum) {
                    sum.second += second_order_source(profile, w, tau, weight / (profile.normalisation() * tau * tau));
@@ -71,15 +64,11 @@ SecondOrderSample second_order(const TriangleSkeleton& triangle, const Vec3d& p,
 }
 
 SecondOrderSample second_order(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
-  if (kernel.family == KernelFamily::Compact) {
-    ArcSkeleton seen = arc;
-    seen.center = arc.center - p;
-    return by_differences([&](const Vec3d& q) { return arc_field<Derivatives::Second>(seen, q, kernel); },
-                          std::min(arc.radius_from, arc.radius_to));
-  }
-  if (kernel.family == KernelFamily::Inverse &&
-      arc_field<Derivatives::ScaleInvariant>(arc, p, kernel.degree).value > field_ceiling)
-    return SecondOrderSample::on_skeleton();
+  if (kernel.family == KernelFamily::Compact)
+    return by_differences(arc, p, [&](const ArcSkeleton& seen, const Vec3d& q) {
+      return arc_field<Derivatives::Second>(seen, q, kernel);
+    });
+  if (is_on(arc, p, kernel)) return SecondOrderSample::on_skeleton();
   const Profile profile(kernel, 1);
   return limited(integrate_arc<Sum>(arc, p, kernel, [&](const Vec3d& v, double tau, double, double weight, Sum& sum) {
                    sum.second += second_order_source(profile, v, tau, weight / (profile.normalisation() * tau));

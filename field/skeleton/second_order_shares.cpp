@@ -1,5 +1,4 @@
 // Second derivatives of the shares of nodes and of the directions of arcs.
-#include <algorithm>
 #include <cstddef>
 
 #include "field/kernel/profile.h"
@@ -7,11 +6,11 @@
 #include "field/skeleton/corners.h"
 #include "field/skeleton/differences.h"
 #include "field/skeleton/line_integral.h"
+#include "field/skeleton/on_skeleton.h"
 #include "field/skeleton/second_order.h"
 #include "field/skeleton/second_order_source.h"
 #include "field/skeleton/seen_line.h"
 #include "field/skeleton/shares.h"
-#include "field/skeleton/skeletons.h"
 #include "field/skeleton/surface_integral.h"
 
 namespace marrow {
@@ -48,20 +47,16 @@ X share_of_end(const SegmentSkeleton& segment, const Vec3d& p, const Kernel& ker
 
 // Under the compact kernel: its first share as the field of a sample, its direction as the other field.
 SecondOrderSample compact_along(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
-  ArcSkeleton seen = arc;
-  seen.center = arc.center - p;
-  const auto plain = [&](const Vec3d& q) {
+  const auto plain = [&](const ArcSkeleton& seen, const Vec3d& q) {
     const ShareSample share = integral_shares(seen, q, kernel)[0];
     const DirectionSample direction = arc_direction(seen, q, kernel);
     return SkeletonSample{share.value, share.gradient, direction.value, direction.jacobian};
   };
-  return by_differences(plain, std::min(arc.radius_from, arc.radius_to));
+  return by_differences(arc, p, plain);
 }
 
 Sum along(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
-  if (kernel.family == KernelFamily::Inverse &&
-      arc_field<Derivatives::ScaleInvariant>(arc, p, kernel.degree).value > field_ceiling)
-    return {};
+  if (is_on(arc, p, kernel)) return {};
   const Profile profile(kernel, 1);
   const Vec3d axis = cross(arc.axis1, arc.axis2), from_center = p - arc.center;
   return integrate_arc<Sum>(arc, p, kernel, [&](const Vec3d& v, double tau, double share, double weight, Sum& sum) {
@@ -75,15 +70,13 @@ Sum along(const ArcSkeleton& arc, const Vec3d& p, const Kernel& kernel) {
 
 // Under the compact kernel: both shares as the field and a component of the other field of a sample.
 SecondOrderShares compact_shares(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
-  TriangleSkeleton seen = triangle;
-  for (Vec3d& v : seen.vertices) v = v - p;
-  const auto plain = [&](const Vec3d& q) {
+  const auto plain = [&](const TriangleSkeleton& seen, const Vec3d& q) {
     const Shares shares = integral_shares(seen, q, kernel);
     SkeletonSample sample{shares[0].value, shares[0].gradient, {shares[1].value, 0, 0}, {}};
     sample.si_jacobian.rows[0] = shares[1].gradient;
     return sample;
   };
-  const auto found = by_differences(plain, std::min({triangle.radii[0], triangle.radii[1], triangle.radii[2]}));
+  const SecondOrderSample found = by_differences(triangle, p, plain);
   return {found.field, found.si.x};
 }
 
@@ -99,9 +92,7 @@ SecondOrderShares second_order_shares(const ArcSkeleton& arc, const Vec3d& p, co
 }
 SecondOrderShares second_order_shares(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
   if (kernel.family == KernelFamily::Compact) return compact_shares(triangle, p, kernel);
-  bool foot_is_inside = false;
-  const TriangleView view = best_view(triangle, p, foot_is_inside);
-  if (kernel.family == KernelFamily::Inverse && foot_is_inside && view.p_normal == 0) return {};
+  if (is_on(triangle, p, kernel)) return {};
   const Profile profile(kernel, 2);
   const Corners corners(triangle);
   const Vec3d from_corner = p - triangle.vertices[0];

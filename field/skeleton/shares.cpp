@@ -6,7 +6,7 @@
 #include "field/skeleton/corners.h"
 #include "field/skeleton/distance.h"
 #include "field/skeleton/nearest_place.h"
-#include "field/skeleton/skeletons.h"
+#include "field/skeleton/on_skeleton.h"
 #include "field/skeleton/surface_integral.h"
 
 namespace marrow {
@@ -63,9 +63,7 @@ Shares integral_shares(const ArcSkeleton& arc, const Vec3d& p, const Kernel& ker
   return along(arc, p, kernel).shares;
 }
 Shares integral_shares(const TriangleSkeleton& triangle, const Vec3d& p, const Kernel& kernel) {
-  bool foot_is_inside = false;
-  const TriangleView view = best_view(triangle, p, foot_is_inside);
-  if (kernel.family == KernelFamily::Inverse && foot_is_inside && view.p_normal == 0) return {};
+  if (is_on(triangle, p, kernel)) return {};
   const Profile profile(kernel, 2);
   const Corners corners(triangle);
   const Vec3d from_corner = p - triangle.vertices[0];
