@@ -38,7 +38,7 @@ struct Answer {
 
 // Of the rays that go together. Beside blends rays through the same cells gain by company; trees take rays one by one,
 // some of them seconds, and an interrupt is looked at between groups.
-std::size_t group_of(const Surfaces& surfaces) { return surfaces.traces_packets() ? 1024 : 16; }
+std::size_t group_of(const Surfaces& surfaces) { return surfaces.traces_packets() ? 1024 : 1; }
 
 void trace(const Surfaces& surfaces, std::span<const ListedRay> listed, bool occlusion, std::span<Answer> answers) {
   std::vector<Ray> rays;
