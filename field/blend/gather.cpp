@@ -193,7 +193,7 @@ PartsAround parts_around(const BlendField& blend, const Vec3d& p, const std::vec
   const LocalContact& rule = *blend.local_contact;
   const auto each_near = [&](const auto& visit) {
     visit_parts(blend, parts, [&](const PrimitiveBounds& part, const auto& list, std::size_t i) {
-      around.near.push_back(near_field_for(rule, list.skeletons[i], p));
+      around.near.push_back(part.counts() ? near_field_for(rule, list.skeletons[i], p) : SkeletonSample{});
       visit(part.sample, around.near.back(), list, i);
     });
   };

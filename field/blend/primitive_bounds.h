@@ -16,6 +16,9 @@ struct PrimitiveBounds {
   int m = 1;
   Interval scaled{0, Box3::inf};   ///< least distance over the radius there, of primitives by distance
   double place_speed = Box3::inf;  ///< of arcs by distance: how fast the angle of the nearest place moves at most
+
+  /// Not where it has no field in the ball, nor where another segment of its strand by distance is the largest there.
+  bool counts() const { return sample.value > 0 || f.hi > 0; }
 };
 
 }  // namespace marrow

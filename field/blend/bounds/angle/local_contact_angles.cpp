@@ -33,14 +33,14 @@ Terms terms_of(const BlendField& blend, const SumBounds& sum, const std::vector<
   Terms terms;
   std::size_t k = 0;
   visit_parts(blend, sum.parts(), [&](const SumBounds::Part& part, const auto& list, std::size_t i) {
+    const SkeletonSample& near_field = near[k++];
+    if (!part.counts()) return;
     const auto& skeleton = list.skeletons[i];
     if (blend.local_contact->adapts_to_density())
-      terms.near.push_back(weight_of(
-          {.sample = near[k], .distance = distance_to(skeleton, sum.center()), .m = near_power(skeleton)}, sum.rho()));
-    ++k;
-    FieldWeight weight = weight_of(part, sum.rho());
-    if (!weight.log && weight.f.hi == 0) return;
-    terms.fields.push_back(std::move(weight));
+      terms.near.push_back(
+          weight_of({.sample = near_field, .distance = distance_to(skeleton, sum.center()), .m = near_power(skeleton)},
+                    sum.rho()));
+    terms.fields.push_back(weight_of(part, sum.rho()));
     terms.radii.push_back(log(mean_radius(skeleton)));
   });
   return terms;
@@ -97,7 +97,8 @@ Told spread_by_means(const Terms& terms, const std::vector<MeanTerm>& weights, c
   }
   const MeanChange A = change_of(weights, squares, mean_square, rho), B = change_of(weights, apart, 0, rho);
   const double moved = B.slope * rho, slope = std::min(at_most.slope, 4 * (A.slope + 2 * moved * B.slope));
-  const double bend = 4 * (A.bend + 2 * B.slope * B.slope + 2 * moved * B.bend), by = slope * rho + rounded;
+  const double bend = 4 * (A.bend + 2 * B.slope * B.slope + 2 * moved * B.bend);
+  const double by = slope < inf ? slope * rho + rounded : inf;
   return {clamped({in_middle - by, in_middle + by}, at_most.value), slope, bend};
 }
 
