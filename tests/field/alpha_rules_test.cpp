@@ -299,6 +299,23 @@ TEST(LocalContact, AdaptsToRadiiUnderEveryKernel) {
   }
 }
 
+// Where contact comes near to it the table's cubics would go beyond, where the operator is not defined.
+TEST(LocalContact, IsNeverWiderThanThePlainSum) {
+  for (const double support : {1.5, 2.0, 2.2}) {
+    const LocalContact rule(Kernel{KernelFamily::Compact, 5, support}, true, Projection::Paper, true, false);
+    EXPECT_LE(rule.range().hi, std::numbers::pi / 2);
+    for (int i = 0; i <= 2000; ++i) {
+      const double spread = 0.005 * i;
+      Neighbourhood place;
+      place.field = 1;
+      place.spread = spread;
+      const double alpha = rule.at(place).value;
+      EXPECT_LE(alpha, std::numbers::pi / 2) << support << " " << spread;
+      EXPECT_TRUE(rule.within({spread, spread}, 1).alpha.contains(alpha)) << support << " " << spread;
+    }
+  }
+}
+
 TEST(LocalContact, IsContactForEqualSkeletonsAndClosesTheTorusWhenItTouchesItself) {
   for (int n = 3; n <= 6; ++n) {
     BlendField blend;

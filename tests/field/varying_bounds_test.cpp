@@ -63,7 +63,8 @@ void add_bounded_kernel(BlendField& blend, Random& random) {
   static const std::vector<LocalContact> all = [] {
     std::vector<LocalContact> list;
     for (const Projection projection : {Projection::Paper, Projection::Exact})
-      for (const Kernel& kernel : {Kernel{KernelFamily::Compact, 4, 1.5}, Kernel{KernelFamily::Compact, 6, 1.6},
+      // degree 5: the table would go beyond pi/2
+      for (const Kernel& kernel : {Kernel{KernelFamily::Compact, 4, 1.5}, Kernel{KernelFamily::Compact, 5, 2},
                                    Kernel{KernelFamily::Cauchy, 5, 1.3}})
         list.emplace_back(kernel, true, projection, true, false);
     return list;
@@ -71,8 +72,8 @@ void add_bounded_kernel(BlendField& blend, Random& random) {
   const auto which = static_cast<std::size_t>(random.whole(0, 2));
   const LocalContact& rule = all[which + (blend.projection == Projection::Exact ? 3 : 0)];
   blend.kernel = which == 2 ? KernelFamily::Cauchy : KernelFamily::Compact;
-  blend.degree = which == 0 ? 4 : which == 1 ? 6 : 5;
-  blend.kernel_shape = which == 0 ? 1.5 : which == 1 ? 1.6 : 1.3;
+  blend.degree = which == 0 ? 4 : 5;
+  blend.kernel_shape = which == 0 ? 1.5 : which == 1 ? 2 : 1.3;
   blend.local_contact = std::make_shared<const LocalContact>(rule);
   blend.alpha = rule.contact();
 }

@@ -18,6 +18,9 @@ namespace {
 
 constexpr int bisections = 50;
 
+// That of the plain sum: between entries of the table the cubic may go beyond.
+constexpr double most = std::numbers::pi / 2;
+
 SkeletonSample field_of(const PointSkeleton& s, const Vec3d& p, const Kernel& kernel) {
   return kernel.family == KernelFamily::Inverse ? point_field<Derivatives::ScaleInvariant>(s, p, kernel.degree)
                                                 : point_field<Derivatives::ScaleInvariant>(s, p, kernel);
@@ -180,15 +183,15 @@ LocalContact::Within LocalContact::within(const Interval& spread, const Interval
     all.by_spread = unequal.steepest;
     all.by_spread_twice = unequal.bent;
   }
-  if (!density_) return all;
-  if (crowd.hi > 2) {
+  if (density_ && crowd.hi > 2) {
     all.by_crowd_twice = 2 * std::fabs(dense_factor_);
     all.by_crowd = all.by_crowd_twice * (crowd.hi - 2);
   }
-  const auto dense = [&](double k) { return k > 2 ? dense_factor_ * (k - 2) * (k - 2) : 0; };
-  const Interval alpha{all.alpha.lo + dense(crowd.hi), all.alpha.hi + dense(crowd.lo)};
-  all.may_be_least = !(alpha.lo > least_);
-  all.alpha = {std::max(least_, alpha.lo) - 1e-12, std::max(least_, alpha.hi) + 1e-12};
+  const auto dense = [&](double k) { return density_ && k > 2 ? dense_factor_ * (k - 2) * (k - 2) : 0; };
+  const Interval alpha{all.alpha.lo + dense(crowd.hi) - 1e-12, all.alpha.hi + dense(crowd.lo) + 1e-12};
+  const Interval allowed{density_ ? least_ : -most, most};
+  all.may_be_cut = !(alpha.lo > allowed.lo && alpha.hi < allowed.hi);
+  all.alpha = clamped(alpha, allowed);
   return all;
 }
 
@@ -216,10 +219,12 @@ template <Number X>
 X LocalContact::angle(const X& field, const X& spread, const X& near_field) const {
   X alpha(contact_);
   if (radii_) alpha += unequal(max(spread, X(0.0)));
-  if (!density_) return alpha;
-  const X beyond_pair = crowd_at(field, near_field) - 2;
-  if (value_of(beyond_pair) > 0) alpha += dense_factor_ * square(beyond_pair);
-  return value_of(alpha) > least_ ? alpha : X(least_);
+  if (density_) {
+    const X beyond_pair = crowd_at(field, near_field) - 2;
+    if (value_of(beyond_pair) > 0) alpha += dense_factor_ * square(beyond_pair);
+    if (!(value_of(alpha) > least_)) return X(least_);
+  }
+  return value_of(alpha) < most ? alpha : X(most);
 }
 
 AlphaSample LocalContact::at(const Neighbourhood& place) const {

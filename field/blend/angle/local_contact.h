@@ -24,7 +24,8 @@ struct Neighbourhood {
 /// `contact` holds for two equal skeletons. Two others join a little late, because at the point of touch f is 2 but
 /// has no minimum there; and where more than two come close, f is larger and they join early. This is the "future work"
 /// of Zanni et al. 2015, sec. 6. The rule:
-///   alpha(p) = contact + unequal(spread) + dense(crowd), at least alpha of the ring (or 0 where it is not defined).
+///   alpha(p) = contact + unequal(spread) + dense(crowd), at least alpha of the ring (or 0 where it is not defined),
+///   at most pi/2.
 ///   unequal  makes two balls of any ratio of radii join when they touch: within 2e-4 of the sum of the
 ///            radii for ratios up to 5, within 2e-3 up to 20 (contact alone: 0.02 and 0.04 late); Cauchy and
 ///            compact kernels within 2e-3 up to 2.5. 0 for equal radii.
@@ -60,7 +61,7 @@ class LocalContact {
   struct Within {
     Interval alpha;
     double by_spread = 0, by_spread_twice = 0, by_crowd = 0, by_crowd_twice = 0;
-    bool may_be_least = false;
+    bool may_be_cut = false;  ///< at `least` or at pi/2
   };
   Within within(const Interval& spread, const Interval& crowd) const;
   /// crowd = (field near_field^-share)^exponent.

@@ -150,7 +150,7 @@ Told crowd_by_logarithms(const LocalContact& rule, const Neighbourhood& place, c
 MeanChange angle_change(const LocalContact::Within& rule, const Told& spread, const Told& crowd) {
   const auto times = [](double factor, double x) { return factor == 0 ? 0 : factor * x; };
   const double slope = times(rule.by_spread, spread.slope) + times(rule.by_crowd, crowd.slope);
-  if (rule.may_be_least) return {slope, inf};
+  if (rule.may_be_cut) return {slope, inf};
   return {slope, times(rule.by_spread, spread.bend) + times(rule.by_spread_twice, spread.slope * spread.slope) +
                      times(rule.by_crowd, crowd.bend) + times(rule.by_crowd_twice, crowd.slope * crowd.slope)};
 }

@@ -11,9 +11,9 @@ namespace marrow {
 ///   spread / 4 = A - B^2,   A and B the means of (l - l_0)^2 and l - l_0, l the logarithm of a radius, weighted by the
 ///     fields, l_0 that mean in the middle, where B = 0: so it changes as A, and with 2 B grad B;
 ///   ln crowd = q (ln f - e ln N), both sums of fields with logarithms.
-/// Where the least angle may take over, or fields have no second derivatives (by distance), to first order; near
-/// skeletons, and where one segment of a strand by distance takes over from another, all angles of the rule with any
-/// gradient.
+/// Where the least or the largest angle may take over, or fields have no second derivatives (by distance), to first
+/// order; near skeletons, and where one segment of a strand by distance takes over from another, all angles of the rule
+/// with any gradient.
 AngleBounds local_contact_angles(const BlendField&, const SumBounds&);
 
 }  // namespace marrow
