@@ -66,7 +66,7 @@ TEST(Arc, CentreOfATorusHasTheFieldOfTheFormula) {
   for (int n = min_kernel_degree; n <= max_kernel_degree; ++n) {
     const SkeletonSample s = arc_field<second>(circle(2, 2), {0, 0, 0}, n);
     EXPECT_LE(relative(s.value, 2 * std::numbers::pi / curve_normalisation(n)), 1e-14);
-    EXPECT_LE(length(s.gradient), 1e-15 * n * s.value);  // terms of n f / 2 each way cancel
+    EXPECT_LE(length(s.gradient), 1e-16 * n * s.value);  // terms of n f / 2 in all cancel
   }
 }
 

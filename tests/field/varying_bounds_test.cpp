@@ -9,6 +9,7 @@
 #include "field/blend/angle/local_contact.h"
 #include "field/blend/bounds/angle/alpha_bounds.h"
 #include "field/blend/bounds/blend_bounds.h"
+#include "field/program/contact_angles.h"
 #include "tests/field/random.h"
 
 namespace marrow {
@@ -60,22 +61,19 @@ class Ramp final : public AlphaSource {
 
 // Adapted to radii, under kernels whose fields have no logarithms, or have them with a lift.
 void add_bounded_kernel(BlendField& blend, Random& random) {
-  static const std::vector<LocalContact> all = [] {
-    std::vector<LocalContact> list;
-    for (const Projection projection : {Projection::Paper, Projection::Exact})
-      // degree 5: the table would go beyond pi/2
-      for (const Kernel& kernel : {Kernel{KernelFamily::Compact, 4, 1.5}, Kernel{KernelFamily::Compact, 5, 2},
-                                   Kernel{KernelFamily::Cauchy, 5, 1.3}})
-        list.emplace_back(kernel, true, projection, true, false);
-    return list;
-  }();
-  const auto which = static_cast<std::size_t>(random.whole(0, 2));
-  const LocalContact& rule = all[which + (blend.projection == Projection::Exact ? 3 : 0)];
-  blend.kernel = which == 2 ? KernelFamily::Cauchy : KernelFamily::Compact;
-  blend.degree = which == 0 ? 4 : 5;
-  blend.kernel_shape = which == 0 ? 1.5 : which == 1 ? 2 : 1.3;
-  blend.local_contact = std::make_shared<const LocalContact>(rule);
-  blend.alpha = rule.contact();
+  static const Kernel kernels[] = {{KernelFamily::Compact, 4, 1.5},
+                                   {KernelFamily::Compact, 5, 2},  // the table would go beyond pi/2
+                                   {KernelFamily::Cauchy, 5, 1.3}};
+  const Kernel& kernel = kernels[random.whole(0, 2)];
+  blend.kernel = kernel.family;
+  blend.degree = kernel.degree;
+  blend.kernel_shape = kernel.shape;
+  static ContactAngles rules_so_far;
+  Blend described;
+  described.kernel = kernel;
+  described.projection = blend.projection;
+  blend.local_contact = rules_so_far.local(described, {.radii = true, .density = false});
+  blend.alpha = blend.local_contact->contact();
 }
 
 // Two polylines by distance: of each only the segment that is the largest counts.

@@ -68,18 +68,17 @@ FieldTree ball_and_negative_blend(Random& random) {
   return tree_above(field, add(field, Sum{}, {tubes, beside}));
 }
 
-TEST(TreeTracer, DecidesBlendsOfNegativeAngles) {
-  Random random(48);
+// Rays from 8 away to places within `reach`, against samples along them.
+struct Tally {
   int hits = 0, undecided = 0, missed = 0;
   std::uint32_t evaluations = 0;
-  constexpr int scenes = 15, rays = 40;
-  for (int scene = 0; scene < scenes; ++scene) {
-    const FieldTree tree = ball_and_negative_blend(random);
+
+  void trace(const FieldTree& tree, Random& random, int rays, double reach) {
     const auto tracer = TreeTracer::make(tree);
     ASSERT_TRUE(tracer) << tracer.why()[0].message;
     for (int r = 0; r < rays; ++r) {
       const Vec3d from = normalize(random.vector(1)) * 8.0;
-      const Ray ray{.origin = from, .direction = normalize(random.vector(1.2) - from)};
+      const Ray ray{.origin = from, .direction = normalize(random.vector(reach) - from)};
       const CrossingSearch found = traced(*tracer, ray);
       const auto expected = sampled(tree, ray, 16);
       missed += expected && !(found.t && *found.t <= expected->hi + 1e-9);
@@ -88,18 +87,28 @@ TEST(TreeTracer, DecidesBlendsOfNegativeAngles) {
       evaluations += found.evaluations;
     }
   }
-  std::cout << "  " << hits << " hits, " << missed << " missed, " << undecided << " undecided, "
-            << evaluations / (scenes * rays) << " evaluations a ray\n";
-  EXPECT_GT(hits, 100);
-  EXPECT_EQ(missed, 0);
-  EXPECT_LE(undecided, 1);
-  EXPECT_LT(evaluations, 200u * scenes * rays);
+  void tell(int rays) const {
+    std::cout << "  " << hits << " hits, " << missed << " missed, " << undecided << " undecided, "
+              << evaluations / static_cast<std::uint32_t>(rays) << " evaluations a ray\n";
+  }
+};
+
+TEST(TreeTracer, DecidesBlendsOfNegativeAngles) {
+  Random random(48);
+  Tally tally;
+  constexpr int scenes = 15, rays = 40;
+  for (int scene = 0; scene < scenes; ++scene) tally.trace(ball_and_negative_blend(random), random, rays, 1.2);
+  tally.tell(scenes * rays);
+  EXPECT_GT(tally.hits, 100);
+  EXPECT_EQ(tally.missed, 0);
+  EXPECT_LE(tally.undecided, 1);
+  EXPECT_LT(tally.evaluations, 200u * scenes * rays);
 }
 
 // The default support at the default degree, where the operator would bring whole volumes to f = 1 but for rounding.
 TEST(TreeTracer, DecidesKernelsWhoseTopIsTheSurface) {
   Random random(49);
-  int hits = 0, undecided = 0, missed = 0;
+  Tally tally;
   constexpr int scenes = 20, rays = 30;
   for (int scene = 0; scene < scenes; ++scene) {
     FieldDescription field;
@@ -111,23 +120,12 @@ TEST(TreeTracer, DecidesKernelsWhoseTopIsTheSurface) {
       one.skeleton = PointSkeleton{random.vector(0.6), random.between(0.5, 0.9)};
       blend.of.push_back(field.add({.what = one, .where = {}}));
     }
-    const FieldTree tree = tree_above(field, field.add({.what = std::move(blend), .where = {}}));
-    const auto tracer = TreeTracer::make(tree);
-    ASSERT_TRUE(tracer) << tracer.why()[0].message;
-    for (int r = 0; r < rays; ++r) {
-      const Vec3d from = normalize(random.vector(1)) * 8.0;
-      const Ray ray{.origin = from, .direction = normalize(random.vector(0.8) - from)};
-      const CrossingSearch found = traced(*tracer, ray);
-      const auto expected = sampled(tree, ray, 16);
-      missed += expected && !(found.t && *found.t <= expected->hi + 1e-9);
-      hits += found.t.has_value();
-      undecided += found.undecided < Box3::inf;
-    }
+    tally.trace(tree_above(field, field.add({.what = std::move(blend), .where = {}})), random, rays, 0.8);
   }
-  std::cout << "  " << hits << " hits, " << missed << " missed, " << undecided << " undecided\n";
-  EXPECT_GT(hits, 300);
-  EXPECT_EQ(missed, 0);
-  EXPECT_LE(undecided, 10);  // silhouettes; C has a kink there
+  tally.tell(scenes * rays);
+  EXPECT_GT(tally.hits, 300);
+  EXPECT_EQ(tally.missed, 0);
+  EXPECT_LE(tally.undecided, 10);  // silhouettes; C has a kink there
 }
 
 // A bend cuts space behind the centre of its circle: rays across the cut are decided all the same.

@@ -57,7 +57,7 @@ class LocalContact {
   /// All angles there may be.
   const Interval& range() const { return range_; }
   /// All with a spread and a crowd within bounds, and the largest first and second derivatives by these there, but
-  /// where `least` takes over. [the cubic pieces lie in the hull of their control points]
+  /// where it is cut. [the cubic pieces lie in the hull of their control points]
   struct Within {
     Interval alpha;
     double by_spread = 0, by_spread_twice = 0, by_crowd = 0, by_crowd_twice = 0;
