@@ -84,6 +84,13 @@ std::optional<double> common_angle(const BlendField& blend) {
   return !all.empty() && are_equal(all) ? std::optional(all.front()) : std::nullopt;
 }
 
+// Of strands whose angles are the same in all directions; nothing where there are none, or where they differ.
+std::optional<double> angle_of_all_bounds(const BlendField& blend) {
+  if (blend.direction_bounds.empty()) return {};
+  const DirectionBounds& first = blend.direction_bounds.front();
+  return first.least == first.most && are_equal(blend.direction_bounds) ? std::optional(first.least) : std::nullopt;
+}
+
 // No point is of the strand of another one, or of segments.
 bool points_are_strands(const BlendField& blend) {
   std::vector<bool> taken(blend.direction_bounds.size(), false);
@@ -95,14 +102,11 @@ bool points_are_strands(const BlendField& blend) {
   });
 }
 
-// The tracer of blends wants one pair of bounds for all strands, and points that are strands by themselves.
+// The tracer of blends wants points that are strands by themselves.
 std::string untraceable_directions(const BlendField& blend) {
-  const DirectionBounds& bounds = blend.direction_bounds.front();
-  if (!are_equal(blend.direction_bounds))
-    return "directions with bounds for each strand are not known to the tracer of blends";
-  if (bounds.least < 0 || bounds.least > bounds.most)
-    return "directions with an angle below 0, or a larger one for crossing strands, are not known to the tracer of "
-           "blends";
+  if (std::ranges::any_of(blend.direction_bounds,
+                          [](const DirectionBounds& b) { return std::min(b.least, b.most) < 0; }))
+    return "directions with an angle below 0 are not known to the tracer of blends";
   if (!points_are_strands(blend))
     return "points of the strand of others, or of segments, are not known to the tracer of blends";
   return {};
@@ -147,6 +151,7 @@ std::optional<double> single_angle(const BlendField& blend) {
   if (!blend.alpha_varies()) return blend.alpha;
   if (blend.alpha_per_skeleton) return common_angle(blend);
   if (blend.direction_bounds.size() == 1) return blend.direction_bounds.front().most;
+  if (const auto angle = angle_of_all_bounds(blend)) return angle;
   const bool points_alone = blend.points.size() == blend.size() && blend.points.size() > 1;
   if (points_alone && blend.direction_bounds.size() > 1 && are_equal(blend.direction_bounds))
     return blend.direction_bounds.front().least;

@@ -169,6 +169,8 @@ TEST(Alpha, IsASingleOneWhereTheRuleGivesNoOther) {
   }
   blend.points.strands[1] = 1;
   blend.direction_bounds[1].most = 1.4;
+  EXPECT_TRUE(untraceable_part(blend).empty());
+  blend.direction_bounds[1].least = -0.1;
   EXPECT_FALSE(untraceable_part(blend).empty());
   blend.segments = {};
   blend.direction_bounds.pop_back();

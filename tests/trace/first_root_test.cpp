@@ -296,5 +296,20 @@ TEST(FirstRoot, AgreesWithTheOracleWhereDirectionsGiveTheAngle) {
   EXPECT_GT(all.hits, 100);
 }
 
+TEST(FirstRoot, AgreesWithTheOracleWhereEachStrandHasBoundsOfItsOwn) {
+  Random random(77);
+  Tally all;
+  for (const int n : {3, 4, 5, 8})
+    for (const int count : {2, 3, 12}) {
+      const Setting s{n, 1, true, n == 4 ? Projection::Exact : Projection::Paper};
+      Judge judge(with_own_bounds(random_stranded_scene(random, s, count), random));
+      for (int i = 0; i < 30; ++i) judge.check(any_ray(random, judge.field()));
+      expect_clean(judge, s);
+      all.add(judge.tally);
+    }
+  all.print("directions of strands with bounds of their own");
+  EXPECT_GT(all.hits, 100);
+}
+
 }  // namespace
 }  // namespace marrow::test

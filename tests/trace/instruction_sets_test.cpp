@@ -42,20 +42,31 @@ TEST(InstructionSets, UnknownOnesAreRefused) {
   EXPECT_FALSE(BlendTracer::make(BlendField{}, {.instruction_set = "mmx"}));
 }
 
-// Stand for one of its own for each skeleton, and for one by directions.
-constexpr double angle_each = 0.125, by_direction = 0.25;
+// Stand for one of its own for each skeleton, and for one by directions, whose bounds are those of all strands or of
+// each.
+constexpr double angle_each = 0.125, by_direction = 0.25, by_own_direction = 0.375;
 
 TEST(InstructionSets, GiveTheSameBits) {
   ASSERT_GE(sets_here().size(), 2U) << "nothing to compare on this machine";
   Random random(91);
   int rays = 0, hits = 0;
-  const Setting settings[] = {{3, 1.0}, {4, contact_alpha(4)}, {4, -0.4},         {5, 0},
-                              {7, 1.2}, {4, angle_each},       {4, by_direction}, {4, 0.8}};
+  const Setting settings[] = {{3, 1.0},
+                              {4, contact_alpha(4)},
+                              {4, -0.4},
+                              {5, 0},
+                              {7, 1.2},
+                              {4, angle_each},
+                              {4, by_direction},
+                              {4, 0.8},
+                              {4, by_own_direction},
+                              {5, by_own_direction}};
   int far_degree = high_far_degree;  // in turns
   for (const Setting& s : settings) {
     const BlendField blend = s.alpha == angle_each     ? random_angled_scene(random, s, 4)
                              : s.alpha == by_direction ? random_stranded_scene(random, s, 5)
-                                                       : random_scene(random, s, 4);
+                             : s.alpha == by_own_direction
+                                 ? with_own_bounds(random_stranded_scene(random, s, 5), random)
+                                 : random_scene(random, s, 4);
     const auto variants = variants_here(far_degree);
     far_degree = far_degree == high_far_degree ? low_far_degree : high_far_degree;
     std::vector<AllCells> tracers;

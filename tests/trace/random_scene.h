@@ -7,6 +7,7 @@
 #include <numbers>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "field/blend/angle/contact.h"
 #include "tests/field/random.h"
@@ -105,6 +106,15 @@ inline BlendField random_stranded_scene(Random& random, const Setting& setting, 
       s.radius_from = s.radius_to;
       along = normalize(along + random_direction(random) * 0.5).vec();
     }
+  }
+  return blend;
+}
+
+/// Gives each strand bounds of its own, some of them larger where it crosses others.
+inline BlendField with_own_bounds(BlendField blend, Random& random) {
+  for (DirectionBounds& b : blend.direction_bounds) {
+    b = {random.between(0, 0.9), random.between(0.6, std::numbers::pi / 2)};
+    if (random.between(0, 1) < 0.2) std::swap(b.least, b.most);
   }
   return blend;
 }

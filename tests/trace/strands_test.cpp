@@ -44,7 +44,7 @@ struct Crowd {
 };
 
 double exact_share(const Crowd& crowd, const BlendSample& at) {
-  const DirectionBounds range = crowd.stage.field.direction_bounds.front();
+  const AngleRange& range = crowd.strands.range();
   return (at.alpha - range.least) / (range.most - range.least);
 }
 
@@ -129,8 +129,7 @@ TEST(Strands, OfEqualOnesAsManyAreListed) {
 }
 
 // Of strands in the middle, and of points about them: far ones are folded, all others count one by one or in a rest.
-TEST(Strands, PointsCountOnce) {
-  Random random(95);
+void expect_points_count_once(Random random, bool have_own_bounds) {
   std::size_t listed = 0, folded = 0;
   std::vector<double> errors;
   for (int scene = 0; scene < 6; ++scene) {
@@ -140,7 +139,7 @@ TEST(Strands, PointsCountOnce) {
       blend.points.strands.push_back(static_cast<std::uint32_t>(blend.direction_bounds.size()));
       blend.direction_bounds.push_back(blend.direction_bounds.front());
     }
-    const Crowd crowd(std::move(blend));
+    const Crowd crowd(have_own_bounds ? with_own_bounds(std::move(blend), random) : std::move(blend));
     for (const CellTree::Cell& cell : crowd.stage.cells) {
       const StrandedLevel made = make_stranded_level(crowd.context, cell);
       std::size_t here = 0;
@@ -161,15 +160,22 @@ TEST(Strands, PointsCountOnce) {
   EXPECT_GT(listed, 0U);
   EXPECT_GT(folded, 0U);
   EXPECT_LT(quantile(errors, 0.5), 1e-6);
-  EXPECT_LT(quantile(errors, 1), 2e-4);
+  // Points have no direction: by one pair of bounds they all make the same of a strand, and what the field of one is
+  // off hardly counts. Largest seen in 11 times 6 scenes of each kind: 5e-5 and, where `others` are 1e-5, 3.7e-4.
+  EXPECT_LT(quantile(errors, 1), have_own_bounds ? 5e-4 : 2e-4);
 }
 
+TEST(Strands, PointsCountOnce) { expect_points_count_once(Random(95), false); }
+
+TEST(Strands, PointsCountOnceByBoundsOfTheirOwn) { expect_points_count_once(Random(100), true); }
+
 // What is traced is near the surface within 2e-5 of the exact share at 99 of 100 places.
-TEST(Strands, PatchesTellTheShareOfRandomScenes) {
-  Random random(92);
+void expect_patches_tell_the_share(Random random, bool have_own_bounds) {
   std::vector<double> exact_errors, fit_errors;
   for (int scene = 0; scene < 4; ++scene) {
-    const Crowd crowd(random_stranded_scene(random, {3 + scene, 0}, 12));
+    BlendField blend = random_stranded_scene(random, {3 + scene, 0}, 12);
+    const Crowd crowd(have_own_bounds ? with_own_bounds(std::move(blend), random) : std::move(blend));
+    ASSERT_EQ(crowd.strands.have_own_angles(), have_own_bounds);
     for (std::size_t i = 0; i < crowd.stage.cells.size(); i += 3) {
       const Block block(crowd.context, crowd.stage.cells[i]);
       for (int k = 0; k < 5; ++k) {
@@ -191,10 +197,13 @@ TEST(Strands, PatchesTellTheShareOfRandomScenes) {
             << "\n";
 }
 
+TEST(Strands, PatchesTellTheShareOfRandomScenes) { expect_patches_tell_the_share(Random(92), false); }
+
+TEST(Strands, PatchesTellTheShareWhereEachStrandHasBoundsOfItsOwn) { expect_patches_tell_the_share(Random(99), true); }
+
 // A thick strand beside a thin one far away, whose field is small in floats or vanishes there: alpha is that of the
 // pair all the same.
-TEST(Strands, OfWeakOthersTellTheAngle) {
-  Random random(96);
+void expect_weak_others_tell_the_angle(Random random, const auto& bounds_of) {
   struct Pair {
     int degree;
     double distance, thin;
@@ -205,7 +214,7 @@ TEST(Strands, OfWeakOthersTellTheAngle) {
     const auto add = [&](const Vec3d& middle, const Vec3d& half, double radius) {
       blend.segments.strands.push_back(static_cast<std::uint32_t>(blend.direction_bounds.size()));
       blend.segments.add({middle - half, middle + half, radius, radius}, {});
-      blend.direction_bounds.push_back(bounds);
+      blend.direction_bounds.push_back(bounds_of(blend.direction_bounds.size()));
     };
     add({0, 0, 0}, {0.05, 0, 0}, 0.1);
     add(random_direction(random) * distance, normalize(Vec3d{1, 0.2, 0}).vec() * (2 * thin), thin);
@@ -227,6 +236,16 @@ TEST(Strands, OfWeakOthersTellTheAngle) {
     EXPECT_GT(places, 10);
     EXPECT_LT(largest, 3e-5) << "degree " << degree << " distance " << distance << " radius " << thin;
   }
+}
+
+TEST(Strands, OfWeakOthersTellTheAngle) {
+  expect_weak_others_tell_the_angle(Random(96), [](std::size_t) { return bounds; });
+}
+
+TEST(Strands, OfWeakOthersTellTheAngleByBoundsOfTheirOwn) {
+  expect_weak_others_tell_the_angle(Random(101), [](std::size_t strand) {
+    return strand == 0 ? DirectionBounds{0.2, 0.9} : DirectionBounds{1.4, 0.7};
+  });
 }
 
 // What is left of the directions of a strand that runs back along itself is rounding: it has none, and crosses all.
@@ -275,6 +294,8 @@ TEST(Strands, FewOfThemCount) {
       blend.segments.strands.insert(blend.segments.strands.end(), 2, static_cast<std::uint32_t>(k));
       blend.direction_bounds.push_back(bounds);
     }
+    const auto range = angle_range(blend);
+    ASSERT_TRUE(range);
     double largest = 0, steepest = 0;
     std::size_t kept = 0;
     constexpr int balls = 40;
@@ -287,7 +308,7 @@ TEST(Strands, FewOfThemCount) {
       kept += few.direction_bounds.size();
       for (int k = 0; k < 5; ++k) {
         const Vec3d p = center + random_direction(random) * reach;
-        const AngleShare by_all = exact_share(blend, p), by_few = exact_share(few, p);
+        const AngleShare by_all = exact_share(blend, *range, p), by_few = exact_share(few, *range, p);
         largest = std::max(largest, std::fabs(by_all.value - by_few.value));
         steepest = std::max(steepest, length(by_all.gradient - by_few.gradient) * reach);
       }
@@ -306,8 +327,9 @@ TEST(Strands, SharesChangeByTheirSlopes) {
   Random random(93);
   constexpr float half = 0.01F;
   std::vector<double> errors;
-  for (int scene = 0; scene < 4; ++scene) {
-    const Crowd crowd(random_stranded_scene(random, {scene % 2 == 0 ? 4 : 5, 0}, 6));
+  for (int scene = 0; scene < 8; ++scene) {
+    BlendField blend = random_stranded_scene(random, {scene % 2 == 0 ? 4 : 5, 0}, 6);
+    const Crowd crowd(scene < 4 ? std::move(blend) : with_own_bounds(std::move(blend), random));
     for (std::size_t i = 0; i < crowd.stage.cells.size(); i += 1 + crowd.stage.cells.size() / 60) {
       const StrandShares at = summed_shares(crowd, crowd.stage.cells[i], random.vector(1), half);
       for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -83,6 +83,8 @@ TEST(SurfacePoint, NormalIsThatOfTheExactFieldWhereTheAngleVaries) {
   for (const int n : {3, 4, 5}) {
     expect_normals_of_varied_angles(random, random_angled_scene(random, {n, 0, true}, 7), hits);
     expect_normals_of_varied_angles(random, random_stranded_scene(random, {n, 1, true}, 9), hits);
+    const BlendField own = with_own_bounds(random_stranded_scene(random, {n, 1, true}, 9), random);
+    expect_normals_of_varied_angles(random, own, hits);
   }
   EXPECT_GT(hits, 200);
 }

@@ -19,11 +19,18 @@ StrandedLevel make_stranded_level(const Block::Context& context, const CellTree:
                     .points = {},
                     .seen = strands.around(*cell.tile, cell.center, cell.half),
                     .groups = {},
-                    .directions = {}};
+                    .directions = {},
+                    .have_own_angles = strands.have_own_angles(),
+                    .angles = {},
+                    .point_crossing = {}};
   SourceEmitter emitter(context.cutter, context.fine, cell.center, cell.half);
   int lanes_told = 0;
   const auto emit = [&](std::uint32_t piece, double share) {
     emitter.emit(context.pieces[piece], share);
+    if (out.have_own_angles && context.pieces[piece].is_point()) {
+      out.point_crossing.resize(static_cast<std::size_t>(emitter.points.group_count()) * lanes);
+      out.point_crossing[static_cast<std::size_t>(emitter.points.count() - 1)] = strands.angle_of_piece(piece).crossing;
+    }
     const Vec3d u = strands.direction(piece);
     out.directions.resize(static_cast<std::size_t>(emitter.curves.group_count()) * 3 * lanes);
     for (; lanes_told < emitter.curves.count(); ++lanes_told)
@@ -46,38 +53,75 @@ StrandedLevel make_stranded_level(const Block::Context& context, const CellTree:
     emitter.curves.end_group();
     lanes_told = emitter.curves.count();
     out.groups.push_back(emitter.curves.group_count() - before);
+    if (out.have_own_angles) out.angles.push_back(strands.angle_of_strand(out.seen.view.near[i]));
   }
   out.curves = std::move(emitter.curves);
   out.points = std::move(emitter.points);
   return out;
 }
 
-// The sources, then their directions, the far strands, the rests of near ones, the counts of their groups, and what
-// refers to them.
+namespace {
+
+// Arrays behind each other, in whole groups of lanes.
+class Room {
+ public:
+  explicit Room(float* at) : at_(at) {}
+
+  template <class T>
+  static std::size_t floats_of(const std::vector<T>& all) {
+    static_assert(sizeof(T) % sizeof(float) == 0);
+    return (all.size() * (sizeof(T) / sizeof(float)) + lanes - 1) / lanes * lanes;
+  }
+  template <class T>
+  T* put(const std::vector<T>& all) {
+    T* const to = reinterpret_cast<T*>(at_);
+    std::uninitialized_copy(all.begin(), all.end(), to);
+    at_ += floats_of(all);
+    return to;
+  }
+  void* rest() const { return at_; }
+
+ private:
+  float* at_;
+};
+
+// StrandLevel::rest: its four numbers of each monomial, strand after strand in whole groups of lanes.
+std::vector<float> rests_of(const std::vector<NearStrand>& near) {
+  const std::size_t stride = (near.size() + lanes - 1) / lanes * lanes, row = 4 * stride;
+  std::vector<float> rests(quadratic_monomials * row, 0.0F);
+  for (std::size_t i = 0; i < near.size(); ++i)
+    for (std::size_t m = 0; m < quadratic_monomials; ++m)
+      for (std::size_t k = 0; k < 4; ++k) rests[m * row + k * stride + i] = near[i].rest[4 * m + k];
+  return rests;
+}
+
+}  // namespace
+
+// The sources, then what goes with the strands, and what refers to that.
 BlockLevel write_stranded_level(const StrandedLevel& from, const Allocate& allocate) {
-  const auto floats_of = [](std::size_t n) { return (n + lanes - 1) / lanes * lanes; };
   constexpr std::size_t reference_floats = (sizeof(StrandLevel) + sizeof(float) - 1) / sizeof(float);
   const CellStrands& seen = from.seen;
-  const std::size_t own = source_floats(from.curves, from.points), count = from.groups.size();
-  const std::size_t stride = floats_of(count), row = 4 * stride;
-  float* const at =
-      allocate(own + from.directions.size() + seen.far.size() + quadratic_monomials * row + stride + reference_floats);
-  float* const directions = at + own;
-  float* const far = std::copy(from.directions.begin(), from.directions.end(), directions);
-  float* const rest = std::copy(seen.far.begin(), seen.far.end(), far);
-  std::fill_n(rest, quadratic_monomials * row, 0.0F);
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t m = 0; m < quadratic_monomials; ++m)
-      for (std::size_t k = 0; k < 4; ++k) rest[m * row + k * stride + i] = seen.near[i].rest[4 * m + k];
-  auto* const groups = reinterpret_cast<int*>(rest + quadratic_monomials * row);
-  std::uninitialized_copy(from.groups.begin(), from.groups.end(), groups);
-  auto* const reference = new (rest + quadratic_monomials * row + stride) StrandLevel{
-      .directions = directions, .groups = groups, .rest = rest, .count = static_cast<int>(count), .far = far};
+  const std::vector<float> rests = rests_of(seen.near);
+  const std::size_t own = source_floats(from.curves, from.points);
+  float* const at = allocate(own + Room::floats_of(from.directions) + Room::floats_of(seen.far) +
+                             Room::floats_of(rests) + Room::floats_of(from.groups) + Room::floats_of(from.angles) +
+                             Room::floats_of(from.point_crossing) + reference_floats);
+  Room room(at + own);
+  StrandLevel strands{.directions = room.put(from.directions),
+                      .groups = room.put(from.groups),
+                      .rest = room.put(rests),
+                      .count = static_cast<int>(from.groups.size()),
+                      .far = room.put(seen.far)};
+  if (from.have_own_angles) {
+    strands.angles = room.put(from.angles);
+    strands.point_crossing = room.put(from.point_crossing);
+    strands.far_weighted = strands.far + quadratics_of_tensor;
+  }
   BlockLevel out;
   out.level = write_sources(from.curves, from.points, at);
   out.angle_error = seen.view.share_error();
   out.is_weak = seen.is_weak;
-  out.level.strands = reference;
+  out.level.strands = new (room.rest()) StrandLevel(strands);
   return out;
 }
 
@@ -103,8 +147,9 @@ double find_shares(const Block::Context& context, const CellTree::Cell& cell, co
   const Vec3d middle = cell.center + in_block * cell.half;
   const double side = static_cast<double>(half) * cell.half;
   const BlendField blend = counting_strands(context.strands->blend(), middle, std::sqrt(3.0) * side);
+  const AngleRange& range = context.strands->range();
   for (std::size_t k = 0; k < strand_places; ++k) {
-    const AngleShare share = exact_share(blend, middle + place_in_cube(k) * side);
+    const AngleShare share = exact_share(blend, range, middle + place_in_cube(k) * side);
     found.share[k] = static_cast<float>(share.value);
     for (std::size_t e = 0; e < 3; ++e) found.slope[e][k] = static_cast<float>(share.gradient[e] * cell.half);
   }

@@ -15,6 +15,9 @@ struct StrandedLevel {
   CellStrands seen;
   std::vector<int> groups;        ///< of each strand of `seen`
   std::vector<float> directions;  ///< as StrandLevel::directions
+  bool have_own_angles = false;   ///< then, as StrandLevel says:
+  std::vector<StrandAngle> angles;
+  std::vector<float> point_crossing;
 };
 
 /// Precondition: the context has strands.

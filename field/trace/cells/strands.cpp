@@ -31,6 +31,9 @@ constexpr double weakest = 1e-30;
 // 1.1 times.
 constexpr double most_inherited = 1e-3;
 
+// What a tensor is at each strand_place.
+constexpr std::size_t values_of_tensor = static_cast<std::size_t>(strand_places) * tensor_floats;
+
 }  // namespace
 
 struct Strands::Cube {
@@ -45,7 +48,12 @@ struct Strands::Seen {
 };
 
 Strands::Strands(const BlendField& blend, std::span<const Piece> pieces, const BlockKernels& kernels)
-    : blend_(blend), pieces_(pieces), kernels_(kernels), degree_(blend.degree) {
+    : blend_(blend),
+      pieces_(pieces),
+      kernels_(kernels),
+      degree_(blend.degree),
+      range_(angle_range(blend).value_or(AngleRange{})) {
+  find_own_angles();
   strands_.resize(blend.direction_bounds.size());
   strand_of_.resize(pieces.size());
   first_node_.resize(pieces.size());
@@ -73,6 +81,16 @@ Strands::Strands(const BlendField& blend, std::span<const Piece> pieces, const B
     s.pieces = std::move(members[k]);
   }
   is_alone_ = std::ranges::count_if(strands_, [](const Strand& s) { return s.count > 0; }) < 2;
+}
+
+// Not where all have the bounds of the range.
+void Strands::find_own_angles() {
+  const DirectionBounds all{range_.least, range_.most};
+  if (std::ranges::all_of(blend_.direction_bounds, [&](const DirectionBounds& b) { return b == all; })) return;
+  const double width = range_.most - range_.least;
+  for (const DirectionBounds& b : blend_.direction_bounds)
+    angles_.push_back({.crossing = static_cast<float>((b.least - range_.least) / width),
+                       .added = static_cast<float>((b.most - b.least) / width)});
 }
 
 Vec3d Strands::direction(std::uint32_t piece) const {
@@ -170,17 +188,27 @@ std::vector<bool> Strands::to_fold(const std::vector<Seen>& seen, double others,
   return chosen;
 }
 
+void Strands::add_to_tensors(std::uint32_t strand, const StrandSamples& samples, std::vector<float>& values) const {
+  kernels_.add_strand(samples, TensorWeights{}, values.data());
+  if (!have_own_angles()) return;
+  const StrandAngle& angle = angles_[strand];
+  kernels_.add_strand(samples, TensorWeights{.directed = angle.added, .all = angle.crossing},
+                      values.data() + values_of_tensor);
+}
+
 // Folds what is far, beside what the tile has folded.
 StrandView Strands::fold(const std::vector<Seen>& seen, const Cube& cube, const Tile* from, std::size_t most,
                          std::vector<float>& values) const {
   StrandView view;
-  values.assign(static_cast<std::size_t>(strand_places) * tensor_floats, 0.0F);
+  values.assign(tensor_count() * values_of_tensor, 0.0F);
   if (from != nullptr) {
     const StrandView& outer = around(*from);
     const Cube outer_cube{from->place().center, from->place().half};
-    for (std::size_t k = 0; k < strand_places; ++k)
-      add_quadratics(outer.far.data(), tensor_floats, (cube.place(k) - outer_cube.center) / outer_cube.half,
-                     values.data() + k * tensor_floats);
+    for (std::size_t tensor = 0; tensor < tensor_count(); ++tensor)
+      for (std::size_t k = 0; k < strand_places; ++k)
+        add_quadratics(outer.far.data() + tensor * quadratics_of_tensor, tensor_floats,
+                       (cube.place(k) - outer_cube.center) / outer_cube.half,
+                       values.data() + tensor * values_of_tensor + k * tensor_floats);
     view.error = outer.error;
   }
   find_others(seen, std::max(0.0, static_cast<double>(values[sum_of_f])), view);
@@ -193,15 +221,18 @@ StrandView Strands::fold(const std::vector<Seen>& seen, const Cube& cube, const 
     }
     StrandSamples samples;
     kernels_.strand_samples(query(strand, cube), samples);
-    kernels_.add_strand(samples, values.data());
+    add_to_tensors(strand, samples, values);
     view.error += error_of(middle);
   }
-  view.far.resize(static_cast<std::size_t>(quadratic_monomials) * tensor_floats);
-  fit_quadratics(values.data(), tensor_floats, view.far.data());
+  view.far.resize(tensor_count() * quadratics_of_tensor);
+  for (std::size_t tensor = 0; tensor < tensor_count(); ++tensor)
+    fit_quadratics(values.data() + tensor * values_of_tensor, tensor_floats,
+                   view.far.data() + tensor * quadratics_of_tensor);
   return view;
 }
 
-bool Strands::is_weak(double others) const { return others < weakest && !is_alone_; }
+// What is alone has the largest angle of all, unless the blend itself is asked for its own.
+bool Strands::is_weak(double others) const { return others < weakest && (!is_alone_ || have_own_angles()); }
 
 std::vector<Strands::Seen> Strands::seen_from(const Cube& cube, const StrandView* parent) const {
   std::vector<Seen> seen;
@@ -236,15 +267,26 @@ const StrandView& Strands::around(const Tile& tile) const {
 
 namespace {
 
+// Over pairs of folded strands at a place, each counted twice: f_i f_j (u_i . u_j)^8 from the tensor there.
+double turned_pairs(const float* tensor) {
+  return contracted(tensor, tensor) - static_cast<double>(tensor[sum_of_directed_squares]);
+}
+// The same times what being parallel adds to both, and f_i f_j times what they have where they cross.
+double turned_pairs(const float* tensor, const float* weighted) {
+  const auto number = [](const float* of, int i) { return static_cast<double>(of[i]); };
+  return contracted(tensor, weighted) - number(weighted, sum_of_directed_squares) +
+         (number(tensor, sum_of_f) * number(weighted, sum_of_f) - number(weighted, sum_of_squares));
+}
+
 // StrandLevel::far from the quadratic of the tensor and from its values, whose products are fitted themselves.
-std::vector<float> far_rows(const std::vector<float>& quadratic, const std::vector<float>& values) {
+std::vector<float> far_rows(const std::vector<float>& quadratic, const std::vector<float>& values, bool have_own) {
   static_assert(static_cast<int>(far_sum) == static_cast<int>(sum_of_f));
   std::vector<float> rows = quadratic;
   float pairs[strand_places][2], fitted[quadratic_monomials][2];
   for (std::size_t k = 0; k < strand_places; ++k) {
     const float* v = values.data() + k * tensor_floats;
     const double f = static_cast<double>(v[sum_of_f]);
-    pairs[k][0] = static_cast<float>(contracted_with_itself(v) - static_cast<double>(v[sum_of_directed_squares]));
+    pairs[k][0] = static_cast<float>(have_own ? turned_pairs(v, v + values_of_tensor) : turned_pairs(v));
     pairs[k][1] = static_cast<float>(f * f - static_cast<double>(v[sum_of_squares]));
   }
   fit_quadratics(pairs[0], 2, fitted[0]);
@@ -281,7 +323,7 @@ CellStrands Strands::around(const Tile& tile, const Vec3d& center, double half) 
   cell.is_weak = is_weak(cell.view.others);
   if (cell.is_weak) cell.view.near.clear();
   for (const std::uint32_t strand : cell.view.near) cell.near.push_back(divided(strand, cube, cell.view));
-  cell.far = far_rows(cell.view.far, values);
+  cell.far = far_rows(cell.view.far, values, have_own_angles());
   return cell;
 }
 

@@ -6,7 +6,8 @@
 // in a time linear in their number (field-maths 7). Of each other strand the pieces that a quadratic would not tell
 // count one by one, and what is left is a quadratic of f and of sum f_s u_s. Well enough is judged by what is left out
 // over the field of all strands but the strongest, as alpha is a mean over pairs. Quadratics are fitted at 15 places of
-// the cube.
+// the cube. Where strands have angles of their own, gamma_ij is a mean of both, and what is folded is told a second
+// time, weighted by them.
 #pragma once
 
 #include <cstddef>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "field/trace/kernels/block_kernels.h"
+#include "field/trace/shares/angle_field.h"
 #include "field/trace/sources/pieces.h"
 
 namespace marrow {
@@ -23,11 +25,16 @@ namespace marrow {
 class Tile;
 struct BlendField;
 
+/// The quadratics of a tensor and of what goes with it.
+inline constexpr std::size_t quadratics_of_tensor = static_cast<std::size_t>(quadratic_monomials) * tensor_floats;
+
 /// What a cube sees of the strands.
 struct StrandView {
   std::vector<std::uint32_t> near;  ///< those that count one by one; of a cell whose others are weak none
-  std::vector<float> far;           ///< all others: tensor_floats for each monomial, in the coordinates of the cube
-  double others = 0;                ///< the field of all strands but the strongest in its middle
+  /// All others: tensor_floats for each monomial, in the coordinates of the cube. Where strands have angles of their
+  /// own, as many again, of sums weighted by them.
+  std::vector<float> far;
+  double others = 0;  ///< the field of all strands but the strongest in its middle
   std::size_t strongest = std::numeric_limits<std::size_t>::max();  ///< that one, if it counts one by one
   double error = 0;  ///< of the fields of strands, because of quadratics: an estimate
 
@@ -45,7 +52,7 @@ struct NearStrand {
 struct CellStrands {
   StrandView view;
   std::vector<NearStrand> near;  ///< view.near, in its order
-  std::vector<float> far;        ///< StrandLevel::far
+  std::vector<float> far;        ///< StrandLevel::far, and behind it far_weighted
   bool is_weak = false;          ///< BlockLevel::is_weak
 };
 
@@ -64,6 +71,12 @@ class Strands {
   /// Of the field of each other strand what one piece may be off.
   static double budget_of(const StrandView&);
   const BlendField& blend() const { return blend_; }
+  const AngleRange& range() const { return range_; }
+  /// Whether they differ by more than where they are.
+  bool have_own_angles() const { return !angles_.empty(); }
+  /// As StrandLevel says. Precondition: they have their own.
+  const StrandAngle& angle_of_strand(std::uint32_t strand) const { return angles_[strand]; }
+  const StrandAngle& angle_of_piece(std::uint32_t piece) const { return angles_[strand_of_[piece]]; }
 
  private:
   struct Strand {
@@ -81,7 +94,10 @@ class Strands {
   };
   static_assert(sizeof(Group) == floats_per_strand_group * sizeof(float));
 
+  void find_own_angles();
   void add_nodes(const Piece&, std::uint32_t index, int& lane);
+  std::size_t tensor_count() const { return have_own_angles() ? 2 : 1; }
+  void add_to_tensors(std::uint32_t strand, const StrandSamples&, std::vector<float>& values) const;
   const StrandView& around(const Tile&) const;
   StrandView view_of(const Cube&, const Tile* around, std::size_t most, std::vector<float>& values) const;
   bool is_weak(double others) const;
@@ -89,7 +105,7 @@ class Strands {
   StrandQuery query(std::uint32_t strand, const Cube&) const;
   Seen see(std::uint32_t strand, const Cube&) const;
   std::vector<bool> to_fold(const std::vector<Seen>&, double others, std::size_t most) const;
-  // Leaves at most `most` to count one by one. `values`: of the tensor, at the places of the cube.
+  // Leaves at most `most` to count one by one. `values`: of each tensor, at the places of the cube.
   StrandView fold(const std::vector<Seen>&, const Cube&, const Tile* from, std::size_t most,
                   std::vector<float>& values) const;
   // Adds what the rest is off to the error of the view.
@@ -99,6 +115,8 @@ class Strands {
   std::span<const Piece> pieces_;
   const BlockKernels& kernels_;
   int degree_;
+  AngleRange range_;
+  std::vector<StrandAngle> angles_;                    // of each strand, where they have their own
   bool is_alone_ = true;                               // there are no two strands
   std::vector<std::uint32_t> strand_of_, first_node_;  // of each piece; the lane of its first node in its strand
   std::vector<Strand> strands_;

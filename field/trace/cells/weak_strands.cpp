@@ -87,8 +87,7 @@ void add_numbered(const PrimitiveList<Skeleton>& from, const std::vector<std::ui
 
 }  // namespace
 
-AngleShare exact_share(const BlendField& blend, const Vec3d& p) {
-  const DirectionBounds range = blend.direction_bounds.front();
+AngleShare exact_share(const BlendField& blend, const AngleRange& range, const Vec3d& p) {
   const double width = range.most - range.least;
   const AlphaSample alpha = alpha_at(blend, p);
   return {std::clamp((alpha.value - range.least) / width, 0.0, 1.0), alpha.gradient / width};
@@ -101,8 +100,8 @@ BlendField counting_strands(const BlendField& blend, const Vec3d& center, double
   out.kernel = blend.kernel;
   out.kernel_shape = blend.kernel_shape;
   out.alpha = blend.alpha;
-  const auto count = numbers.size() - static_cast<std::size_t>(std::ranges::count(numbers, none));
-  out.direction_bounds.assign(count, blend.direction_bounds.front());
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (numbers[i] != none) out.direction_bounds.push_back(blend.direction_bounds[i]);
   add_numbered(blend.points, numbers, out.points);
   add_numbered(blend.segments, numbers, out.segments);
   return out;

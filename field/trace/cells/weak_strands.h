@@ -3,6 +3,7 @@
 
 #include "field/blend/blend_field.h"
 #include "field/math/vec3.h"
+#include "field/trace/shares/angle_field.h"
 
 namespace marrow {
 
@@ -12,8 +13,9 @@ struct AngleShare {
   Vec3d gradient;
 };
 
-/// The share by all primitives of a blend of points and segments whose strands have the same bounds; in double.
-AngleShare exact_share(const BlendField&, const Vec3d& p);
+/// The share by all primitives of a blend of points and segments with directions, in double. Their bounds lie in the
+/// range.
+AngleShare exact_share(const BlendField&, const AngleRange&, const Vec3d& p);
 
 /// Such a blend of those strands alone that shares within the ball may depend on: all that is left out together is
 /// below 1e-6 of the second strongest strand, over whose field a share is a mean.

@@ -20,6 +20,8 @@
 #include "field/trace/kernels/sums/packet_sums.h"
 #include "field/trace/kernels/search/iso.h"
 #include "field/trace/kernels/angles/strands.h"
+#include "field/trace/kernels/angles/strand_turns.h"
+#include "field/trace/kernels/angles/strand_shares.h"
 #include "field/trace/kernels/angles/strand_samples.h"
 #include "field/trace/kernels/angles/angle_place.h"
 #include "field/trace/kernels/angles/share_patch.h"

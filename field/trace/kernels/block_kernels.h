@@ -251,6 +251,11 @@ struct StrandInMiddle {
 struct StrandSamples {
   float sums[strand_places][4];  ///< f and sum f_s u_s
 };
+/// What a strand counts in a tensor and in the sums beside it: those of f u^8 and of f^2 with a direction `directed`
+/// times, of f and of f^2 `all` times.
+struct TensorWeights {
+  float directed = 1, all = 1;
+};
 
 struct BlockKernels {
   struct Query {
@@ -297,7 +302,7 @@ struct BlockKernels {
   /// With `near`: as strand_in_middle() found them.
   void (*strand_samples)(const StrandQuery&, StrandSamples&);
   /// Adds a strand to tensor_floats sums at each of strand_place, not where its f is infinite.
-  void (*add_strand)(const StrandSamples&, float* tensors);
+  void (*add_strand)(const StrandSamples&, const TensorWeights&, float* tensors);
 };
 
 /// The kernels of an instruction set ("sse4", "avx2", "avx512"), or of the best one here for "";

@@ -27,6 +27,12 @@ static_assert(static_cast<int>(far_pairs) < tensor_floats);
 inline constexpr int most_strands = 512;        ///< that a block lists
 inline constexpr int quadratic_monomials = 10;  ///< 1 x y z xx yy zz xy xz yz
 
+/// What directions make of a pair of strands, as shares of the range of angles: crossing / 2 of both where they cross,
+/// and added / 2 of both more where they are parallel.   [Zanni et al. 2015, eq. 16: B and A]
+struct StrandAngle {
+  float crossing = 0, added = 1;
+};
+
 /// The strands of a fine level, whose directions give the angle (strands.h).
 struct StrandLevel {
   const float* directions = nullptr;  ///< of each source of the curve groups: x[16] y[16] z[16]
@@ -36,6 +42,13 @@ struct StrandLevel {
   /// Strands that are not listed, for each monomial tensor_floats: sum f u^8; then far_sum, far_turned_pairs and
   /// far_pairs.
   const float* far = nullptr;
+  /// Where strands have angles of their own, of each strand, and `crossing` of each source of the point groups; else
+  /// null, and all have those of StrandAngle.
+  const StrandAngle* angles = nullptr;
+  const float* point_crossing = nullptr;
+  /// Then for each monomial tensor_floats more: sum added f u^8, and sum crossing f in place of far_sum. The pairs of
+  /// `far` are weighted by what directions make of them.
+  const float* far_weighted = nullptr;
 };
 
 /// One representation of the field in a block: f = sum w d^-m + polynomial, G = grad_S f likewise with w tau. Sources

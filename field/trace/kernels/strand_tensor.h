@@ -22,7 +22,8 @@ struct Multinomial {
 inline constexpr Multinomial<7> times_in_seventh;
 inline constexpr Multinomial<8> times_in_eighth;
 
-/// sum f_i f_j (u_i . u_j)^8 over all i and j of a tensor sum f_i u_i^8 of tensor_components numbers.
-double contracted_with_itself(const float* tensor);
+/// sum f_i g_j (u_i . u_j)^8 over all i and j of two tensors, sum f_i u_i^8 and sum g_j u_j^8, of tensor_components
+/// numbers each.
+double contracted(const float* a, const float* b);
 
 }  // namespace marrow

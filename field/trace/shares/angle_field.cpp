@@ -13,7 +13,7 @@ std::optional<AngleRange> angle_range(const BlendField& blend) {
     for (const double alpha : list.alphas) range = {std::min(range.least, alpha), std::max(range.most, alpha)};
   });
   for (const DirectionBounds& b : blend.direction_bounds)
-    range = {std::min(range.least, b.least), std::max(range.most, b.most)};
+    range = {std::min({range.least, b.least, b.most}), std::max({range.most, b.least, b.most})};
   return range;
 }
 

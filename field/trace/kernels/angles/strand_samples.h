@@ -91,9 +91,9 @@ void strand_samples(const StrandQuery& query, StrandSamples& out) {
   }
 }
 
-// Adds f u^8, f, f^2 and f^2 with a direction of one strand to tensors at the places, a place in each lane; not where f
-// is no number.
-void add_strand(const StrandSamples& samples, float* tensors) {
+// Adds f u^8, f, f^2 and f^2 with a direction of one strand to tensors at the places, each by its weight, a place in
+// each lane; not where f is no number.
+void add_strand(const StrandSamples& samples, const TensorWeights& weights, float* tensors) {
   V16 s[4];
   for (int k = 0; k < 4; ++k) {
     alignas(64) float at_places[lanes] = {};
@@ -114,10 +114,10 @@ void add_strand(const StrandSamples& samples, float* tensors) {
   V16* to = rows;
   for (int i = 0; i <= 8; ++i)
     for (int j = 0; i + j <= 8; ++j)
-      *to++ = select(directed, f * (power[0][i] * power[1][j] * power[2][8 - i - j]), V16{});
-  *to++ = select(finite, f, V16{});
-  *to++ = select(finite, f * f, V16{});
-  *to++ = select(directed, f * f, V16{});
+      *to++ = select(directed, weights.directed * f * (power[0][i] * power[1][j] * power[2][8 - i - j]), V16{});
+  *to++ = select(finite, weights.all * f, V16{});
+  *to++ = select(finite, weights.all * (f * f), V16{});
+  *to++ = select(directed, weights.directed * (f * f), V16{});
   for (int part = 0; part < tensor_floats; part += native_lanes) {
     V16 of_part[native_lanes];
     for (int i = 0; i < native_lanes; ++i) of_part[i] = rows[part + i];

@@ -1,5 +1,4 @@
-// The share of the range of angles from the directions of strands [Zanni et al. 2015, eq. 15], at sixteen places of a
-// cube. Part of block_kernels_<set>.cpp.
+// The fields and directions of strands at sixteen places of a cube. Part of block_kernels_<set>.cpp.
 
 // Of a strand over its f.
 constexpr float least_direction_squared = static_cast<float>(least_direction * least_direction);
@@ -17,6 +16,11 @@ struct Slopes16 {
     Slopes16 product{a.value * b.value, {}};
     for (int e = 0; e < 3; ++e) product.slope[e] = a.slope[e] * b.value + a.value * b.slope[e];
     return product;
+  }
+  friend Slopes16 operator*(Slopes16 a, float weight) {
+    a.value = a.value * weight;
+    for (V16& slope : a.slope) slope = slope * weight;
+    return a;
   }
 };
 
@@ -44,8 +48,9 @@ struct Places16 {
   }
 };
 
-// One strand: f_i and its direction u_i, of length 1 or 0. N = sum f_i f_j (u_i . u_j)^8 over pairs has the derivatives
-// u_i . turn_i by f_i and 8 f_i turn_i by u_i, where turn_i is the sum of f_j (u_i . u_j)^7 u_j over all others.
+// One strand: f_i and its direction u_i, of length 1 or 0. N = sum a_ij f_i f_j (u_i . u_j)^8 over pairs, a_ij the mean
+// of what being parallel adds to the angles of both, has the derivatives u_i . turn_i by f_i and 8 f_i turn_i by u_i,
+// where turn_i is the sum of a_ij f_j (u_i . u_j)^7 u_j over all others.
 struct Strand16 {
   Slopes16 f, u[3];
   V16 turn[3] = {};
@@ -55,10 +60,10 @@ struct Strand16 {
   V16 along(const T (&v)[3]) const {
     return u[0].value * v[0] + u[1].value * v[1] + u[2].value * v[2];
   }
-  // Adds f (u . b.u)^7 u to the turn of another.
-  void turn_other(Strand16& b) const {
+  // Adds f (u . b.u)^7 u, times a weight, to the turn of another.
+  void turn_other(Strand16& b, float weight) const {
     const V16 to[3] = {b.u[0].value, b.u[1].value, b.u[2].value};
-    const V16 steep = f.value * power_of(along(to), 7);
+    const V16 steep = weight * f.value * power_of(along(to), 7);
     for (int k = 0; k < 3; ++k) b.turn[k] += steep * u[k].value;
   }
 };
@@ -144,168 +149,5 @@ inline void find_strands(const FieldLevel& level, int exponent, const Places16& 
     set_strand(s, out[j]);
     group += strands.groups[j] * floats_per_group;
     direction += strands.groups[j] * 3 * lanes;
-  }
-}
-
-// The symmetric tensor sum f u^8 over strands (field-maths 7), whose components are those of StrandLevel::far.
-struct Tensor16 {
-  V16 of[tensor_components] = {};
-
-  static constexpr int component(int i, int j) { return i * (19 - i) / 2 + j; }
-
-  Tensor16& operator+=(const Tensor16& b) {
-    for (int k = 0; k < tensor_components; ++k) of[k] += b.of[k];
-    return *this;
-  }
-};
-
-// Of the direction of a strand: the powers of its components.
-template <int Degree>
-struct DirectionPowers {
-  V16 of[3][Degree + 1];
-
-  explicit DirectionPowers(const Strand16& s) {
-    for (int k = 0; k < 3; ++k) {
-      of[k][0] = splat(1);
-      for (int i = 1; i <= Degree; ++i) of[k][i] = of[k][i - 1] * s.u[k].value;
-    }
-  }
-};
-
-inline void add_strand(const Strand16& s, Tensor16& to) {
-  const DirectionPowers<8> u(s);
-  for (int i = 0; i <= 8; ++i) {
-    const V16 first = s.f.value * u.of[0][i];
-    for (int j = 0; i + j <= 8; ++j) to.of[Tensor16::component(i, j)] += first * u.of[1][j] * u.of[2][8 - i - j];
-  }
-}
-
-// Adds sum f_j (u_j . u)^7 u_j over the strands of a tensor to the turn of one.
-inline void turn_by(const Tensor16& t, Strand16& s) {
-  const DirectionPowers<7> u(s);
-  for (int i = 0; i <= 7; ++i)
-    for (int j = 0; i + j <= 7; ++j) {
-      const V16 product = times_in_seventh.of[i][j] * u.of[0][i] * u.of[1][j] * u.of[2][7 - i - j];
-      s.turn[0] += product * t.of[Tensor16::component(i + 1, j)];
-      s.turn[1] += product * t.of[Tensor16::component(i, j + 1)];
-      s.turn[2] += product * t.of[Tensor16::component(i, j)];
-    }
-}
-
-// The strands that are the strongest at some place.
-struct Strongest {
-  int of[lanes], count = 0;
-
-  Strongest(const Strand16* strands, int all) {
-    V16 most{}, which = splat(-1);
-    for (int j = 0; j < all; ++j) {
-      const auto stronger = strands[j].f.value > most;
-      which = select(stronger, splat(static_cast<float>(j)), which);
-      most = select(stronger, strands[j].f.value, most);
-    }
-    alignas(64) float at_places[lanes];
-    __builtin_memcpy(at_places, &which, sizeof which);
-    for (const float at : at_places)
-      if (at >= 0 && !holds(static_cast<int>(at))) of[count++] = static_cast<int>(at);
-  }
-  bool holds(int strand) const {
-    for (int i = 0; i < count; ++i)
-      if (of[i] == strand) return true;
-    return false;
-  }
-};
-
-// Finds what turns each strand: all others by one tensor, less its own part, where that is not most of it at any place,
-// so that no digits are lost.
-inline void find_turns(Strand16* strands, int count, Tensor16 others, Tensor16& near) {
-  const Strongest strongest(strands, count);
-  Tensor16 strong;
-  near = {};
-  for (int j = 0; j < count; ++j) add_strand(strands[j], strongest.holds(j) ? strong : near);
-  others += near;
-  for (int i = 0; i < strongest.count; ++i) {
-    Strand16& s = strands[strongest.of[i]];
-    turn_by(others, s);
-    for (int j = 0; j < strongest.count; ++j)
-      if (j != i) strands[strongest.of[j]].turn_other(s);
-  }
-  others += strong;
-  near += strong;
-  for (int j = 0; j < count; ++j) {
-    if (strongest.holds(j)) continue;
-    Strand16& s = strands[j];
-    turn_by(others, s);
-    for (int k = 0; k < 3; ++k) s.turn[k] -= s.f.value * s.u[k].value;
-  }
-}
-
-// sum f_i f_j over pairs, one strand after the other.
-struct PairsOfFields {
-  Slopes16 before, sum;
-  void add(const Slopes16& f) {
-    sum = sum + f * before;
-    before = before + f;
-  }
-};
-
-// Points are strands by themselves, without a direction.
-inline void add_points(const FieldLevel& level, int degree, const Places16& at, PairsOfFields& pairs) {
-  const float* group = point_sources(level);
-  const float m = static_cast<float>(degree - 1);
-  for (int k = 0; k < level.point_groups; ++k, group += floats_per_group)
-    for (int i = 0; i < lanes; ++i) {
-      if (!(group[48 + i] > 0)) continue;
-      const V16 d[3] = {at.p[0] - group[i], at.p[1] - group[16 + i], at.p[2] - group[32 + i]};
-      const V16 inv = 1.0F / (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-      Slopes16 f{field_of<0>(splat(group[48 + i]), splat(group[64 + i]), inv, degree - 1), {}};
-      for (int e = 0; e < 3; ++e) f.slope[e] = -m * f.value * inv * d[e];
-      pairs.add(f);
-    }
-}
-
-void strand_shares(const FieldLevel& level, int degree, const float (&center)[3], float half, float* memory,
-                   StrandShares& out) {
-  const StrandLevel& seen = *level.strands;
-  auto* const strands = static_cast<Strand16*>(static_cast<void*>(memory));
-  const Places16 at(center, half);
-  if (degree == 4) find_strands<4>(level, degree, at, strands);
-  else find_strands<0>(level, degree, at, strands);
-  // Twice N over pairs of which one is among the near strands.
-  Tensor16 far, near;
-  for (int k = 0; k < tensor_components; ++k) far.of[k] = at.quadratic(seen.far + k, tensor_floats).value;
-  find_turns(strands, seen.count, far, near);
-  Slopes16 turned{};
-  for (int i = 0; i <= 8; ++i)
-    for (int j = 0; i + j <= 8; ++j) {
-      const int k = Tensor16::component(i, j);
-      const Slopes16 of_far = at.quadratic(seen.far + k, tensor_floats);
-      const V16 of_near = times_in_eighth.of[i][j] * near.of[k];
-      turned.value += of_near * of_far.value;
-      for (int e = 0; e < 3; ++e) turned.slope[e] += 2.0F * of_near * of_far.slope[e];
-    }
-  PairsOfFields pairs;
-  pairs.before = at.quadratic(seen.far + far_sum, tensor_floats);
-  for (int j = 0; j < seen.count; ++j) {
-    const Strand16& s = strands[j];
-    pairs.add(s.f);
-    const V16 by_f = s.along(s.turn), by_u = 8.0F * s.f.value;
-    turned.value += s.f.value * by_f;
-    for (int e = 0; e < 3; ++e) {
-      V16 by_turn{};
-      for (int k = 0; k < 3; ++k) by_turn += s.turn[k] * s.u[k].slope[e];
-      turned.slope[e] += 2.0F * (by_f * s.f.slope[e] + by_u * by_turn);
-    }
-  }
-  add_points(level, degree, at, pairs);
-  const Slopes16 above = turned + at.quadratic(seen.far + far_turned_pairs, tensor_floats),
-                 below = pairs.sum + pairs.sum + at.quadratic(seen.far + far_pairs, tensor_floats);
-  // One strand alone: any angle will do, see directional_alpha.h.
-  const auto some = below.value > 1e-36F;
-  const V16 inverse = select(some, 1.0F / below.value, V16{});
-  const V16 share = select(some, smaller(splat(1), larger(V16{}, above.value * inverse)), splat(1));
-  __builtin_memcpy(out.share, &share, sizeof share);
-  for (int e = 0; e < 3; ++e) {
-    const V16 slope = (above.slope[e] - share * below.slope[e]) * inverse;
-    __builtin_memcpy(out.slope[e], &slope, sizeof slope);
   }
 }
