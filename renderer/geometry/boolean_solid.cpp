@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "field/math/growing_steps.h"
 #include "renderer/geometry/tree_solid.h"
 
 namespace marrow {
@@ -230,16 +231,16 @@ void BooleanSolid::free_start(const Ray& ray, SurfaceHit& hit) const {
   const Frame frame = Frame::around(hit.normal);
   const double size = max_component(sides_.bounds().size()),
                rounding = 0x1p-48 * (largest_coordinate(sides_.bounds()) + size),
-               first = std::max(length(hit.outside - hit.position), rounding),
-               longest = std::max(1e-3 * size, 64 * first);
+               first = std::max(length(hit.outside - hit.position), rounding);
+  const GrowingSteps steps{first, 4, std::max(1e-3 * size, 64 * first)};
+  const auto is_outside = [&](const Vec3d& p) { return sides_.side_of_whole(p, 0) == Side::Outside; };
   for (const Vec3d& way : {normal, normal + back, back, frame.to_world({1, 0, 1}), frame.to_world({-1, 0, 1}),
                            frame.to_world({0, 1, 1}), frame.to_world({0, -1, 1})})
-    for (double step = first; step < longest; step *= 4)
-      if (const Vec3d p = hit.position + way * step; sides_.side_of_whole(p, 0) == Side::Outside) {
-        hit.outside = p;
-        hit.around = {};
-        return;
-      }
+    if (const auto start = first_place_along(hit.position, way, steps, is_outside)) {
+      hit.outside = *start;
+      hit.around = {};
+      return;
+    }
 }
 
 std::size_t BooleanSolid::primitive_count() const {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "field/blend/blend_field.h"
+#include "field/math/growing_steps.h"
 #include "field/number/places_in.h"
 #include "field/number/variables_at.h"
 #include "field/tree/tree_node.h"
@@ -88,13 +89,10 @@ double TreeSolid::field_error() const { return holds_blends_ ? 1e-6 : 1e-10; }
 // The shortest of growing steps, by the field itself.
 std::optional<Vec3d> TreeSolid::start_inside(const HitToDescribe& of) const {
   const SurfaceHit& hit = *of.hit;
-  const double first = length(hit.outside - hit.position),
-               longest = std::max(1e-3 * max_component(element_box(of.element).size()), 64 * first);
-  for (double step = first; step > 0 && step < longest; step *= 4) {
-    const Vec3d p = hit.position - hit.normal * step;
-    if (value(p) > 1 + 2 * field_error()) return p;
-  }
-  return {};
+  const double first = length(hit.outside - hit.position);
+  const GrowingSteps steps{first, 4, std::max(1e-3 * max_component(element_box(of.element).size()), 64 * first)};
+  return first_place_along(hit.position, -hit.normal, steps,
+                           [&](const Vec3d& p) { return value(p) > 1 + 2 * field_error(); });
 }
 
 FieldSample TreeSolid::sample(const Vec3d& p) const {

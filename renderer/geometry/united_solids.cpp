@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
+
+#include "field/math/growing_steps.h"
 
 namespace marrow {
 namespace {
@@ -12,6 +15,7 @@ namespace {
 constexpr double clearly = 1e-5, surely = 1e-3;
 // What doubles may round.
 constexpr double least_margin = 1e-12;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // What a solid stepped off its surface, or, where it found no step, what places there are rounded by.
 double first_step(const SurfaceHit& hit, const Box3& reach) {
@@ -107,7 +111,7 @@ PartHit UnitedSolids::nearest(std::span<const std::size_t> solids, const Ray& ra
     for (std::size_t element = 0; element < solid.element_count(); ++element) {
       ElementLog log = visit.before(solid);
       const auto t = solid.hit(element, ray, false, log);
-      visit.take(s, solid, {.element = element}, t.value_or(std::numeric_limits<double>::infinity()), log);
+      visit.take(s, solid, {.element = element}, t.value_or(infinity), log);
     }
   }
   return visit.best;
@@ -161,6 +165,11 @@ double UnitedSolids::largest_beside(std::size_t solid, const Vec3d& p) const {
   return largest;
 }
 
+std::optional<Vec3d> UnitedSolids::outside_along(std::size_t solid, const Vec3d& from, const Vec3d& way,
+                                                 const GrowingSteps& steps, double margin) const {
+  return first_place_along(from, way, steps, [&](const Vec3d& p) { return largest_beside(solid, p) < 1 - margin; });
+}
+
 // Away from both, back along the ray or on along it, or, where two all but touch, to a side: the first of growing steps
 // that is outside all of the body.
 void UnitedSolids::free_start(std::size_t solid, const Ray& ray, SurfaceHit& hit) const {
@@ -177,16 +186,18 @@ void UnitedSolids::free_start(std::size_t solid, const Ray& ray, SurfaceHit& hit
   const Vec3d normal = hit.normal, away = outward(solids_[*nearest].solid->sample(hit.outside)),
               back = -ray.direction.vec();
   const Box3& reach = solids_[solid].reach;
-  const double first = first_step(hit, reach), longest = 1e-2 * max_component(reach.size());
+  const double first = first_step(hit, reach);
+  const GrowingSteps steps{first, 2, std::max(1e-2 * max_component(reach.size()), 16 * first)};
   const Frame frame = Frame::around(hit.normal);
   for (const double margin : {3 * clearly, least_margin})
     for (const Vec3d& way : {normal + away, back, away + back, normal + back, away, -back, frame.to_world({1, 0, 0}),
-                             frame.to_world({-1, 0, 0}), frame.to_world({0, 1, 0}), frame.to_world({0, -1, 0})})
-      for (double step = first; length_squared(way) > 0 && step < std::max(longest, 16 * first); step *= 2)
-        if (const Vec3d p = hit.position + way * step; largest_beside(solid, p) < 1 - margin) {
-          hit.outside = p;
-          return;
-        }
+                             frame.to_world({-1, 0, 0}), frame.to_world({0, 1, 0}), frame.to_world({0, -1, 0})}) {
+      if (!(length_squared(way) > 0)) continue;
+      if (const auto start = outside_along(solid, hit.position, way, steps, margin)) {
+        hit.outside = *start;
+        return;
+      }
+    }
 }
 
 std::optional<Vec3d> UnitedSolids::start_before(std::size_t solid, const Ray& ray, const SurfaceHit& hit) const {
@@ -194,9 +205,10 @@ std::optional<Vec3d> UnitedSolids::start_before(std::size_t solid, const Ray& ra
   const Box3& reach = solids_[solid].reach;
   const double longest = std::min(hit.t - ray.t_min, 1e-2 * max_component(reach.size()));
   if (!(longest > 0)) return {};
+  // The longest is one of them.
+  const GrowingSteps steps{std::min(first_step(hit, reach), longest), 2, std::nextafter(longest, infinity)};
   for (const double margin : {3 * clearly, least_margin})
-    for (double step = std::min(first_step(hit, reach), longest); step <= longest; step *= 2)
-      if (const Vec3d p = hit.position - ray.direction * step; largest_beside(solid, p) < 1 - margin) return p;
+    if (const auto start = outside_along(solid, hit.position, -ray.direction, steps, margin)) return start;
   return {};
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "field/base/result.h"
+#include "field/math/growing_steps.h"
 #include "renderer/geometry/box_index.h"
 #include "renderer/geometry/part_visit.h"
 #include "renderer/geometry/solid.h"
@@ -60,6 +61,9 @@ class UnitedSolids {
   void for_each_other(std::size_t solid, const Vec3d& p, const Use&) const;
   // Of the fields of a solid and of the others of its body; what is clearly outside counts as 0.
   double largest_beside(std::size_t solid, const Vec3d& p) const;
+  // The first place at which all of these are below 1 by more than the margin.
+  std::optional<Vec3d> outside_along(std::size_t solid, const Vec3d& from, const Vec3d& way, const GrowingSteps&,
+                                     double margin) const;
 
   std::vector<Placed> solids_;
   std::vector<Body> bodies_;

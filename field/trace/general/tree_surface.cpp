@@ -1,6 +1,7 @@
 // What is there at a hit: the normal, a place outside for further rays, the material.
 #include <algorithm>
 
+#include "field/math/growing_steps.h"
 #include "field/number/variables_at.h"
 #include "field/trace/general/tree_fields.h"
 
@@ -29,14 +30,15 @@ std::optional<Vec3d> TreeTracer::outside_along(const Cell& c, const Vec3d& posit
   const double off = error_at(c);
   std::optional<Vec3d> summed;
   const double shortest = shortest_step(c);
-  for (double step = shortest; step < std::max(longest_step * c.box.size().x, 64 * shortest); step *= 4) {
-    const Vec3d p = position + direction * step;
+  const GrowingSteps steps{shortest, 4, std::max(longest_step * c.box.size().x, 64 * shortest)};
+  const auto certain = first_place_along(position, direction, steps, [&](const Vec3d& p) {
     const Interval enclosed = field_enclosed(c, p);
-    if (enclosed.hi < 1 - off) return p;
-    if (summed) continue;
-    if (enclosed.hi < 1 - rounding_of_sums || (enclosed.lo < 1 && field_near(c, p, p) < 1 - likely)) summed = p;
-  }
-  return summed;
+    if (enclosed.hi < 1 - off) return true;
+    if (!summed && (enclosed.hi < 1 - rounding_of_sums || (enclosed.lo < 1 && field_near(c, p, p) < 1 - likely)))
+      summed = p;
+    return false;
+  });
+  return certain ? certain : summed;
 }
 
 double TreeTracer::error_at(const Cell& c) const {
