@@ -43,8 +43,9 @@ FieldSample sample_of(const PlacedBlend& part, const Vec3d& p) {
 }
 
 FieldSample sample_of(const FieldTree& tree, const Vec3d& p) {
-  const auto v = value(tree, variables_at<Jet<double, 3>>(p));
-  return {.value = v.value, .gradient = gradient_of(v), .material = strongest_material(tree, p)};
+  FieldSample sample = value_and_gradient(tree, p);
+  sample.material = strongest_material(tree, p);
+  return sample;
 }
 
 }  // namespace
@@ -74,6 +75,11 @@ FieldSample evaluate(const FieldProgram& program, const Vec3d& p) {
   const Largest largest = largest_part(program, p);
   if (largest.tree != nullptr) return sample_of(*largest.tree, p);
   return largest.part != nullptr ? sample_of(*largest.part, p) : FieldSample{};
+}
+
+FieldSample value_and_gradient(const FieldTree& tree, const Vec3d& p) {
+  const auto f = value(tree, variables_at<Jet<double, 3>>(p));
+  return {.value = f.value, .gradient = gradient_of(f)};
 }
 
 double value(const FieldProgram& program, const Vec3d& p) { return largest_part(program, p).value; }

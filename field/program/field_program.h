@@ -58,6 +58,8 @@ struct FieldSample {
   MaterialId material{};  ///< of the strongest contribution to the part that gives the value; invalid: the object's
 };
 FieldSample evaluate(const FieldProgram&, const Vec3d& p);
+/// Of a tree alone, without the material, which takes a search of its own.
+FieldSample value_and_gradient(const FieldTree&, const Vec3d& p);
 
 /// The `value` of evaluate(), bit for bit, at less cost.
 double value(const FieldProgram&, const Vec3d& p);

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "field/number/variables_at.h"
-
 namespace marrow {
 namespace {
 
@@ -24,10 +22,7 @@ BooleanSides::BooleanSides(FieldTree whole, const Box3& bounds, SetExpression ex
   for (std::size_t i = 0; i < operands_.size(); ++i) needed_.push_back(side_if_outside(i, bounds_) == Side::Outside);
 }
 
-FieldSample BooleanSides::sample(const Vec3d& p) const {
-  const auto f = marrow::value(whole_, variables_at<Jet<double, 3>>(p));
-  return {.value = f.value, .gradient = gradient_of(f)};
-}
+FieldSample BooleanSides::sample(const Vec3d& p) const { return value_and_gradient(whole_, p); }
 
 double BooleanSides::value(const Vec3d& p) const { return marrow::value(whole_, p); }
 

@@ -6,7 +6,6 @@
 #include "field/blend/blend_field.h"
 #include "field/math/growing_steps.h"
 #include "field/number/places_in.h"
-#include "field/number/variables_at.h"
 #include "field/tree/tree_node.h"
 
 namespace marrow {
@@ -95,10 +94,7 @@ std::optional<Vec3d> TreeSolid::start_inside(const HitToDescribe& of) const {
                            [&](const Vec3d& p) { return value(p) > 1 + 2 * field_error(); });
 }
 
-FieldSample TreeSolid::sample(const Vec3d& p) const {
-  const auto f = marrow::value(tracer_.tree(), variables_at<Jet<double, 3>>(p));
-  return {.value = f.value, .gradient = gradient_of(f)};
-}
+FieldSample TreeSolid::sample(const Vec3d& p) const { return value_and_gradient(tracer_.tree(), p); }
 
 double TreeSolid::value(const Vec3d& p) const { return marrow::value(tracer_.tree(), p); }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "field/number/variables_at.h"
+#include "field/program/field_program.h"
 
 namespace marrow::test {
 namespace {
@@ -33,12 +33,10 @@ std::vector<double> knots_of(double begin, double end, std::span<const double> p
 
 ChangeSearch::Sample ChangeSearch::at(double t) {
   ++samples_;
-  using X = Jet<double, 3>;
-  const Vec3d p = ray_.at(t);
-  const X f = marrow::value(tree_, variables_at<X>(p));
+  const FieldSample f = value_and_gradient(tree_, ray_.at(t));
   const double off = f.value - 1, scale = 1 + std::fabs(off);
   if (!std::isfinite(off)) return {t, off > 0 ? 1.0 : -1.0, 0};
-  const double slope = dot(gradient_of(f), ray_.direction.vec());
+  const double slope = dot(f.gradient, ray_.direction.vec());
   return {t, off / scale, std::isfinite(slope) ? slope / (scale * scale) : 0};
 }
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "field/number/variables_at.h"
+#include "field/program/field_program.h"
 #include "tests/stress/change_search.h"
 #include "tests/stress/ulp_of_float.h"
 
@@ -36,11 +36,8 @@ struct Slopes {
   double value, along, steepness;
 };
 Slopes slopes_at(const TreeScene& scene, const Ray& ray, double t) {
-  using X = Jet<double, 3>;
-  const Vec3d p = ray.at(t);
-  const X f = value(scene.tree(), variables_at<X>(p));
-  const Vec3d gradient = gradient_of(f);
-  return {f.value, std::fabs(dot(gradient, ray.direction.vec())), length(gradient)};
+  const FieldSample f = value_and_gradient(scene.tree(), ray.at(t));
+  return {f.value, std::fabs(dot(f.gradient, ray.direction.vec())), length(f.gradient)};
 }
 
 // By which places of a ray may be off.
