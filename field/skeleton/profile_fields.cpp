@@ -1,7 +1,6 @@
 // Points and segments under the Cauchy and the compact kernel; shares of segments under any.
 #include "field/skeleton/compact_chord.h"
-#include "field/skeleton/line_integral.h"
-#include "field/skeleton/seen_line.h"
+#include "field/skeleton/segment_integral.h"
 #include "field/skeleton/shares.h"
 #include "field/skeleton/skeletons.h"
 
@@ -19,31 +18,28 @@ template <Derivatives Order>
 SkeletonSample segment_field(const SegmentSkeleton& segment, const Vec3d& p, const Kernel& kernel) {
   SkeletonSample sum;
   if (segment.from == segment.to) return sum;
-  const auto [length, foot, u, across, line] = seen_from(segment, p);
-  if (kernel.family == KernelFamily::Compact && line.slope == 0) {
-    CompactChords(kernel, 1).add<Order>(line, across, u, 1 / line.at_foot, sum);
+  const SeenLine seen = seen_from(segment, p);
+  if (kernel.family == KernelFamily::Compact && seen.line.slope == 0) {
+    CompactChords(kernel, 1).add<Order>(seen.line, seen.across, seen.along, 1 / seen.line.at_foot, sum);
     return sum;
   }
   const Profile profile(kernel, 1);
-  integrate_line(line, kernel, 1, [&](double t, double weight) {
-    const double tau = segment.radius_from + line.slope * (t + foot);
-    add_source<Order>(profile, across - u * t, tau, weight / (profile.normalisation() * tau), sum);
-  });
+  integrate_segment(segment, seen, kernel, profile,
+                    [&](const SegmentNode& node) { add_source<Order>(profile, node.v, node.tau, node.weight, sum); });
   return sum;
 }
 
 ShareSample segment_share(const SegmentSkeleton& segment, const Vec3d& p, const Kernel& kernel) {
   ShareSample share;
   if (segment.from == segment.to) return share;
-  const auto [length, foot, u, across, line] = seen_from(segment, p);
-  if (is_on_line(line, kernel)) return share;
+  const SeenLine seen = seen_from(segment, p);
+  if (is_on_line(seen.line, kernel)) return share;
   const Profile profile(kernel, 1);
-  integrate_line(line, kernel, 1, [&](double t, double weight) {
-    const double tau = segment.radius_from + line.slope * (t + foot);
+  integrate_segment(segment, seen, kernel, profile, [&](const SegmentNode& node) {
     SkeletonSample part;
-    add_source<Derivatives::First>(profile, across - u * t, tau, weight / (profile.normalisation() * tau), part);
-    share.value += part.value * ((t + foot) / length);
-    share.gradient += part.gradient * ((t + foot) / length);
+    add_source<Derivatives::First>(profile, node.v, node.tau, node.weight, part);
+    share.value += part.value * node.share;
+    share.gradient += part.gradient * node.share;
   });
   return share;
 }

@@ -5,10 +5,9 @@
 
 #include "field/skeleton/compact_line.h"
 #include "field/skeleton/differences.h"
-#include "field/skeleton/line_integral.h"
 #include "field/skeleton/on_skeleton.h"
 #include "field/skeleton/second_order_source.h"
-#include "field/skeleton/seen_line.h"
+#include "field/skeleton/segment_integral.h"
 #include "field/skeleton/skeletons.h"
 #include "field/skeleton/surface_integral.h"
 
@@ -41,12 +40,11 @@ SecondOrderSample second_order(const SegmentSkeleton& segment, const Vec3d& p, c
   SecondOrderSample sum;
   if (segment.from == segment.to) return sum;
   if (kernel.family == KernelFamily::Compact) return compact_line(segment, p, kernel);
-  const auto [length, foot, u, across, line] = seen_from(segment, p);
-  if (is_on_line(line, kernel)) return SecondOrderSample::on_skeleton();
+  const SeenLine seen = seen_from(segment, p);
+  if (is_on_line(seen.line, kernel)) return SecondOrderSample::on_skeleton();
   const Profile profile(kernel, 1);
-  integrate_line(line, kernel, 1, [&](double t, double weight) {
-    const double tau = segment.radius_from + line.slope * (t + foot);
-    sum += second_order_source(profile, across - u * t, tau, weight / (profile.normalisation() * tau));
+  integrate_segment(segment, seen, kernel, profile, [&](const SegmentNode& node) {
+    sum += second_order_source(profile, node.v, node.tau, node.weight);
   });
   return limited(sum);
 }

@@ -5,11 +5,10 @@
 #include "field/skeleton/compact_line.h"
 #include "field/skeleton/corners.h"
 #include "field/skeleton/differences.h"
-#include "field/skeleton/line_integral.h"
 #include "field/skeleton/on_skeleton.h"
 #include "field/skeleton/second_order.h"
 #include "field/skeleton/second_order_source.h"
-#include "field/skeleton/seen_line.h"
+#include "field/skeleton/segment_integral.h"
 #include "field/skeleton/shares.h"
 #include "field/skeleton/surface_integral.h"
 
@@ -34,13 +33,11 @@ X share_of_end(const SegmentSkeleton& segment, const Vec3d& p, const Kernel& ker
   X share;
   if (segment.from == segment.to) return share;
   if (kernel.family == KernelFamily::Compact) return compact_line(segment, p, kernel, true).field;
-  const auto [length, foot, u, across, line] = seen_from(segment, p);
-  if (is_on_line(line, kernel)) return share;
+  const SeenLine seen = seen_from(segment, p);
+  if (is_on_line(seen.line, kernel)) return share;
   const Profile profile(kernel, 1);
-  integrate_line(line, kernel, 1, [&](double t, double weight) {
-    const double tau = segment.radius_from + line.slope * (t + foot);
-    const double part = weight / (profile.normalisation() * tau) * ((t + foot) / length);
-    share += second_order_source(profile, across - u * t, tau, part).field;
+  integrate_segment(segment, seen, kernel, profile, [&](const SegmentNode& node) {
+    share += second_order_source(profile, node.v, node.tau, node.weight * node.share).field;
   });
   return share;
 }
