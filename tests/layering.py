@@ -61,7 +61,7 @@ ARROWS = {
     "renderer/app/command_line": BELOW_APP + ["renderer/app/text"],
     "renderer/app/machine": BELOW_APP + ["renderer/app/command_line"],
     "renderer/app/report": BELOW_APP + ["renderer/app/text", "renderer/app/command_line"],
-    "renderer/app/input": BELOW_APP + ["renderer/app/text", "renderer/app/command_line"],
+    "renderer/app/input": BELOW_APP + ["renderer/app/text", "renderer/app/command_line", "renderer/app/report"],
     "renderer/app/picture": BELOW_APP + ["renderer/app/command_line", "renderer/app/report", "renderer/app/input"],
     "renderer/app/commands": BELOW_APP + ["renderer/app/text", "renderer/app/command_line", "renderer/app/machine",
                                           "renderer/app/report", "renderer/app/input", "renderer/app/picture"],

@@ -151,9 +151,8 @@ std::string text_of(const Json& info) {
 
 ExitCode run(const InfoCommand& command) {
   ReadRecord record;
-  const auto scene = load(command.scene, record);
-  if (!scene) return report(scene.why(), record.sources, exit_code_of_failed_load(command.scene));
-  report(record.warnings, record.sources, ExitCode::Ok);
+  const auto scene = load_and_report(command.scene, record);
+  if (!scene) return exit_code_of_failed_load(command.scene);
   const auto surfaces = build_surfaces(scene->description, {.isa = {}, .threads = command.threads});
   if (!surfaces) return report(surfaces.why(), record.sources, ExitCode::BadInput);
   const Json info = scene_info(command.scene, *scene, **surfaces);

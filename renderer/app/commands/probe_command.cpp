@@ -104,9 +104,8 @@ Result<std::vector<Vec3d>> points_of(const std::filesystem::path& path, SourceCa
 
 ExitCode run(const ProbeCommand& command) {
   ReadRecord record;
-  const auto scene = load(command.scene, record);
-  if (!scene) return report(scene.why(), record.sources, exit_code_of_failed_load(command.scene));
-  report(record.warnings, record.sources, ExitCode::Ok);
+  const auto scene = load_and_report(command.scene, record);
+  if (!scene) return exit_code_of_failed_load(command.scene);
   const auto fields = select_fields(*scene, command.object);
   if (!fields) return report(fields.why(), ExitCode::Usage);
   if (fields->size() > 1) return report({several_fields(*fields, scene->description)}, ExitCode::Usage);

@@ -19,7 +19,6 @@
 #include "renderer/app/report/progress_line.h"
 #include "renderer/app/report/report.h"
 #include "renderer/geometry/build_surfaces.h"
-#include "renderer/scene/read_scene.h"
 #include "renderer/transport/render.h"
 #include "renderer/transport/render_scene.h"
 
@@ -73,9 +72,8 @@ ExitCode run(const RenderCommand& command) {
   if (const auto missing = missing_instruction_set({command.isa, command.embree_isa}); !missing.empty())
     return report(missing, ExitCode::Unavailable);
   ReadRecord record;
-  const auto scene = read_scene(command.scene.path, ReadOptions{.overrides = command.scene.overrides}, record);
-  if (!scene) return report(scene.why(), record.sources, exit_code_of_failed_load(command.scene));
-  report(record.warnings, record.sources, ExitCode::Ok);
+  const auto scene = read_and_report(command.scene, record);
+  if (!scene) return exit_code_of_failed_load(command.scene);
   report(picture_advice(*scene, command.scene), record.sources, ExitCode::Ok);
   const auto prepared = prepare(command, scene->film);
   if (const auto* stop = std::get_if<Stop>(&prepared)) return report(stop->why, stop->code);

@@ -54,9 +54,8 @@ ExitCode run(const SliceCommand& command) {
   if (ending != ".exr" && ending != ".png")
     return report({failure("the output must end in .exr or .png", command.output.string())}, ExitCode::Usage);
   ReadRecord record;
-  const auto scene = load(command.scene, record);
-  if (!scene) return report(scene.why(), record.sources, exit_code_of_failed_load(command.scene));
-  report(record.warnings, record.sources, ExitCode::Ok);
+  const auto scene = load_and_report(command.scene, record);
+  if (!scene) return exit_code_of_failed_load(command.scene);
   const auto fields = select_fields(*scene, command.object);
   if (!fields) return report(fields.why(), ExitCode::Usage);
   if (const auto status = check_writable(command.output); !status) return report(status.why(), ExitCode::CannotCreate);

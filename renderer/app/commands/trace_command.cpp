@@ -22,7 +22,6 @@
 #include "renderer/app/text/json_values.h"
 #include "renderer/app/text/print.h"
 #include "renderer/geometry/build_surfaces.h"
-#include "renderer/scene/read_scene.h"
 #include "renderer/transport/render.h"
 
 namespace marrow {
@@ -133,9 +132,8 @@ ExitCode run(const TraceCommand& command) {
   if (const auto missing = missing_instruction_set({command.isa}); !missing.empty())
     return report(missing, ExitCode::Unavailable);
   ReadRecord record;
-  const auto scene = read_scene(command.scene.path, ReadOptions{.overrides = command.scene.overrides}, record);
-  if (!scene) return report(scene.why(), record.sources, exit_code_of_failed_load(command.scene));
-  report(record.warnings, record.sources, ExitCode::Ok);
+  const auto scene = read_and_report(command.scene, record);
+  if (!scene) return exit_code_of_failed_load(command.scene);
   if (command.rays != "-") {
     if (const auto status = check_readable(command.rays); !status) return report(status.why(), ExitCode::NoInput);
   }

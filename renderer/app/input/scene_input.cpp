@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
 
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include "renderer/app/report/report.h"
 #include "renderer/scene/suggestion.h"
 
 namespace marrow {
@@ -22,10 +24,20 @@ Diagnostic no_such_field(const LoadedScene& scene, const std::string& name) {
                    suggest(name, fields));
 }
 
+Result<SceneDescription> read(const SceneInput& input, ReadRecord& record) {
+  return read_scene(input.path, ReadOptions{.overrides = input.overrides}, record);
+}
+
+template <class Scene>
+std::optional<Scene> reported(Result<Scene> scene, const ReadRecord& record) {
+  report(scene ? record.warnings : scene.why(), record.sources, ExitCode::Ok);
+  return scene ? std::optional(std::move(*scene)) : std::nullopt;
+}
+
 }  // namespace
 
 Result<LoadedScene> load(const SceneInput& input, ReadRecord& record) {
-  auto description = read_scene(input.path, ReadOptions{.overrides = input.overrides}, record);
+  auto description = read(input, record);
   if (!description) return description.why();
   LoadedScene scene{std::move(*description), {}};
   Diagnostics errors;
@@ -43,6 +55,14 @@ Result<LoadedScene> load(const SceneInput& input, ReadRecord& record) {
   }
   if (!errors.empty()) return errors;
   return scene;
+}
+
+std::optional<LoadedScene> load_and_report(const SceneInput& input, ReadRecord& record) {
+  return reported(load(input, record), record);
+}
+
+std::optional<SceneDescription> read_and_report(const SceneInput& input, ReadRecord& record) {
+  return reported(read(input, record), record);
 }
 
 ExitCode exit_code_of_failed_load(const SceneInput& input) {

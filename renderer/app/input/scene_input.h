@@ -28,6 +28,10 @@ struct LoadedScene {
 /// Reads the scene and compiles its fields; `record` tells of texts and warnings (also those of the fields).
 Result<LoadedScene> load(const SceneInput&, ReadRecord& record);
 
+/// How most commands begin: load(), or read_scene() alone, and mistakes or else warnings are reported.
+std::optional<LoadedScene> load_and_report(const SceneInput&, ReadRecord& record);
+std::optional<SceneDescription> read_and_report(const SceneInput&, ReadRecord& record);
+
 /// NoInput when the scene's file is not there or cannot be read, else BadInput: how a command whose load() failed ends.
 ExitCode exit_code_of_failed_load(const SceneInput&);
 
