@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "renderer/scene/files/text_scan.h"
+#include "renderer/scene/finite_number.h"
 
 namespace marrow {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 
 #include <fmt/core.h>
 
 #include "renderer/scene/files/ascii.h"
+#include "renderer/scene/finite_number.h"
 
 namespace marrow {
 namespace {
@@ -63,12 +63,7 @@ std::optional<double> parse_number(std::string_view text) {
     const auto integer = parse_integer(text);
     return integer ? std::optional(static_cast<double>(*integer)) : std::nullopt;
   }
-  if (!is_decimal(text)) return std::nullopt;
-  if (text[0] == '+') text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
+  return is_decimal(text) ? finite_number(text) : std::nullopt;
 }
 
 std::string number_hint(std::string_view text) {

@@ -1,17 +1,10 @@
-// Numbers and durations: what is read is what was meant, and nothing else is read.
+// Durations and pieces: what is read is what was meant, and nothing else is read.
 #include "renderer/app/text/text.h"
 
 #include <gtest/gtest.h>
 
 namespace marrow {
 namespace {
-
-TEST(Decimal, ReadsWholeNumbersAndNothingBeside) {
-  EXPECT_EQ(parse_decimal("-1.5e2"), -150);
-  EXPECT_EQ(parse_decimal("+3"), 3);
-  for (const auto* wrong : {"", "+", "+-1", "1 ", " 1", "1x", "nan", "inf", "1e999", "0x10", "1,5"})
-    EXPECT_FALSE(parse_decimal(wrong)) << wrong;
-}
 
 TEST(Duration, AddsHoursMinutesAndSeconds) {
   EXPECT_EQ(parse_duration("90"), 90);

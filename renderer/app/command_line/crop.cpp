@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "renderer/app/text/text.h"
+#include "renderer/scene/finite_number.h"
 
 namespace marrow {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 std::optional<Crop::Coordinate> parse_coordinate(std::string_view text) {
   const bool percent = !text.empty() && text.back() == '%';
   if (percent) text.remove_suffix(1);
-  const auto value = parse_decimal(text);
+  const auto value = finite_number(text);
   // Beyond 2^30 no film reaches, and a pixel count must fit an int.
   if (!value || std::fabs(*value) > 1 << 30 || (!percent && *value != std::floor(*value))) return std::nullopt;
   return Crop::Coordinate{*value, percent};

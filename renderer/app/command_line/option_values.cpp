@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "renderer/app/text/text.h"
+#include "renderer/scene/finite_number.h"
 #include "renderer/scene/scalar.h"
 
 namespace marrow {
@@ -21,7 +22,7 @@ Result<std::uint64_t> parse_seed(const std::string& text) {
 Result<std::pair<double, double>> parse_range(const std::string& text) {
   const auto parts = split(text, ':');
   if (parts.size() == 2) {
-    const auto low = parse_decimal(parts[0]), high = parse_decimal(parts[1]);
+    const auto low = finite_number(parts[0]), high = finite_number(parts[1]);
     if (low && high && *low < *high) return std::pair{*low, *high};
   }
   return failure("a range is LOW:HIGH with LOW < HIGH; found '" + text + "'");
@@ -31,7 +32,7 @@ Result<SliceWindow> parse_window(const std::string& text) {
   const auto parts = split(text, ',');
   std::vector<double> edges;
   for (const auto part : parts)
-    if (const auto edge = parse_decimal(part)) edges.push_back(*edge);
+    if (const auto edge = finite_number(part)) edges.push_back(*edge);
   if (parts.size() == 4 && edges.size() == 4 && edges[0] < edges[2] && edges[1] < edges[3])
     return SliceWindow{edges[0], edges[1], edges[2], edges[3]};
   return failure("a window is u0,v0,u1,v1 in scene units with u0 < u1 and v0 < v1; found '" + text + "'");

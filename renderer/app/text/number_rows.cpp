@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "renderer/app/text/text.h"
+#include "renderer/scene/finite_number.h"
 
 namespace marrow {
 namespace {
@@ -27,7 +28,7 @@ std::vector<Word> words_of(std::string_view line) {
 
 std::optional<RowProblem> read_numbers(std::span<const Word> words, std::span<double> numbers) {
   for (std::size_t i = 0; i < std::min(words.size(), numbers.size()); ++i) {
-    const auto value = parse_decimal(words[i].text);
+    const auto value = finite_number(words[i].text);
     if (!value) return RowProblem{fmt::format("`{}` is not a finite number", words[i].text), words[i]};
     numbers[i] = *value;
   }

@@ -1,11 +1,12 @@
-// std::from_chars, because it knows no locale.
+// Pieces are views; nothing is copied.
 #include "renderer/app/text/text.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+
+#include "renderer/scene/finite_number.h"
 
 namespace marrow {
+
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   for (auto at = text.find(separator); at != std::string_view::npos; at = text.find(separator)) {
@@ -16,14 +17,6 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   return parts;
 }
 
-std::optional<double> parse_decimal(std::string_view text) {
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 std::optional<double> parse_duration(std::string_view text) {
   constexpr std::string_view units = "hms";
   constexpr double seconds[] = {3600, 60, 1};
@@ -31,7 +24,7 @@ std::optional<double> parse_duration(std::string_view text) {
   std::size_t next_unit = 0;  // hours before minutes before seconds, each at most once
   while (!text.empty()) {
     const auto length = std::min(text.find_first_of(units), text.size());
-    const auto value = parse_decimal(text.substr(0, length));
+    const auto value = finite_number(text.substr(0, length));
     const auto unit = length < text.size() ? units.find(text[length]) : units.find('s');
     if (!value || *value < 0 || unit < next_unit) return std::nullopt;
     total += *value * seconds[unit];

@@ -10,9 +10,6 @@ namespace marrow {
 /// The pieces between separators; as many as there are separators, and one.
 std::vector<std::string_view> split(std::string_view, char separator);
 
-/// A finite decimal number and nothing else. A leading + is allowed; the locale does not matter.
-std::optional<double> parse_decimal(std::string_view);
-
 /// Seconds of "90", "90s", "10m", "1h30m"; positive.
 std::optional<double> parse_duration(std::string_view);
 

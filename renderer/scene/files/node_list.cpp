@@ -8,6 +8,8 @@
 
 #include <fmt/core.h>
 
+#include "renderer/scene/finite_number.h"
+
 namespace marrow {
 
 namespace {

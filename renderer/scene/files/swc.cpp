@@ -10,6 +10,7 @@
 #include "renderer/scene/files/node_list.h"
 #include "renderer/scene/files/parents.h"
 #include "renderer/scene/files/text_scan.h"
+#include "renderer/scene/finite_number.h"
 
 namespace marrow {
 namespace {

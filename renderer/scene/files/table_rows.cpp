@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "renderer/scene/finite_number.h"
+
 namespace marrow {
 namespace {
 

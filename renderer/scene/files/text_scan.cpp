@@ -1,8 +1,7 @@
-// Scanning with std::from_chars and std::string_view::find; nothing is copied.
+// Scanning by std::string_view::find; nothing is copied.
 #include "renderer/scene/files/text_scan.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -98,15 +97,6 @@ std::string_view trimmed(std::string_view text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
   return text;
-}
-
-std::optional<double> finite_number(std::string_view word) {
-  const char *at = word.data(), *const stop = at + word.size();
-  if (at != stop && *at == '+') ++at;
-  double value = 0;
-  const auto [end, error] = std::from_chars(at, stop, value);
-  if (at == stop || error != std::errc{} || end != stop || !std::isfinite(value)) return std::nullopt;
-  return value;
 }
 
 std::optional<long long> whole_number(double value) {

@@ -1,4 +1,4 @@
-// What readers of text files share: lines, words, numbers, and mistakes with their places.
+// What readers of text files share: lines, words, and mistakes with their places.
 #pragma once
 
 #include <optional>
@@ -69,8 +69,6 @@ inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 std::string_view next_word(std::string_view& line);
 std::string_view trimmed(std::string_view);
 
-/// A decimal number that is finite; not hexadecimal, not nan or inf.
-std::optional<double> finite_number(std::string_view);
 /// A whole number up to 2^53, which tables often write with a point.
 std::optional<long long> whole_number(double);
 
