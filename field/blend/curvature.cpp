@@ -5,7 +5,6 @@
 #include "field/blend/second_order_gather.h"
 
 namespace marrow {
-namespace {
 
 Matrix3 hessian_of(const HessianJet& f) {
   Matrix3 m;
@@ -15,8 +14,6 @@ Matrix3 hessian_of(const HessianJet& f) {
   }
   return m;
 }
-
-}  // namespace
 
 Matrix3 sum_hessian(const BlendField& blend, const Vec3d& p) {
   return hessian_of(second_order_gather(blend, p).sum.field);

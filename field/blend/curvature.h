@@ -7,6 +7,9 @@
 
 namespace marrow {
 
+/// The six second derivatives as a symmetric matrix.
+Matrix3 hessian_of(const HessianJet&);
+
 /// The Hessian of the plain sum f, from the second derivatives of every skeleton in closed form, or under its integral
 /// (field/skeleton/second_order.h). 0 on a skeleton.
 Matrix3 sum_hessian(const BlendField&, const Vec3d& p);

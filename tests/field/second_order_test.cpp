@@ -28,10 +28,6 @@ using test::varied_blend;
 
 constexpr auto second = Derivatives::Second;
 
-Matrix3 curvatures_of(const HessianJet& x) {
-  const auto& c = x.curvature;
-  return {{Vec3d{c[0], c[5], c[4]}, Vec3d{c[5], c[1], c[3]}, Vec3d{c[4], c[3], c[2]}}};
-}
 double magnitude(const Matrix3& m) { return length(m.rows[0]) + length(m.rows[1]) + length(m.rows[2]); }
 
 // Rows of second derivatives by differences of what gives the first ones, and how uncertain they are.
@@ -128,7 +124,7 @@ TEST(SecondOrder, OfEverySkeletonAndKernel) {
         EXPECT_LE(length(s.si_jacobian.rows[c] - gradient_of(jets.si[c])), 1e-9 * jacobian_size);
       }
       const auto agrees = [&](const Differences& d, const HessianJet& jet) {
-        const Matrix3 exact = curvatures_of(jet);
+        const Matrix3 exact = hessian_of(jet);
         const double scale = magnitude(exact) + 1e-3 * (size + jacobian_size);
         ++checked;
         if (!(d.change < 1e-3 * scale)) {
@@ -164,7 +160,7 @@ TEST(SecondOrder, OfCorrectedFields) {
     EXPECT_LE(length(s.corrected_gradient - gradient_of(jet)), 1e-9 * (size + s.corrected));
     const Differences d =
         differences_of([&](const Vec3d& q) { return evaluate(blend, q).corrected_gradient; }, p, 1e-4);
-    const Matrix3 exact = curvatures_of(jet);
+    const Matrix3 exact = hessian_of(jet);
     const double scale = magnitude(exact) + 1e-2 * (size + s.corrected);
     ++checked;
     in_cavity += correction_of(blend).in_cavity_branch(s.sum, s.si_norm);
@@ -197,7 +193,7 @@ TEST(SecondOrder, OnTheReferenceCurveTheCorrectionChangesNothing) {
     const Vec3d p = random.vector(3);
     const HessianJet jet = second_order_corrected(ball, p);
     const Matrix3 plain = sum_hessian(ball, p);
-    EXPECT_LE(magnitude(curvatures_of(jet) + plain * -1.0), 1e-11 * magnitude(plain)) << round;
+    EXPECT_LE(magnitude(hessian_of(jet) + plain * -1.0), 1e-11 * magnitude(plain)) << round;
   }
 }
 

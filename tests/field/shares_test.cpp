@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "field/blend/curvature.h"
 #include "field/program/field_program.h"
 #include "field/skeleton/second_order.h"
 #include "field/skeleton/skeletons.h"
@@ -85,10 +86,6 @@ TEST(Shares, OfTheCornersOfATriangleSumToItsField) {
   }
 }
 
-Matrix3 curvatures_of(const HessianJet& x) {
-  const auto& c = x.curvature;
-  return {{Vec3d{c[0], c[5], c[4]}, Vec3d{c[5], c[1], c[3]}, Vec3d{c[4], c[3], c[2]}}};
-}
 double magnitude(const Matrix3& m) { return length(m.rows[0]) + length(m.rows[1]) + length(m.rows[2]); }
 
 struct Checks {
@@ -113,7 +110,7 @@ void expect_derivatives(const auto& first, const HessianJet& jet, const Vec3d& p
   ++checks.done;
   if (!(change < 1e-3 * scale)) return void(++checks.rough);  // another place is nearest, or the edge of a support
   EXPECT_LE(length(near - here.gradient), length(near - wide) + 1e-7 * scale);
-  EXPECT_LE(magnitude(near_rows + curvatures_of(jet) * -1.0), change + 1e-6 * scale);
+  EXPECT_LE(magnitude(near_rows + hessian_of(jet) * -1.0), change + 1e-6 * scale);
 }
 
 // Plain shares by distance are weighted; so are the jets here.

@@ -50,8 +50,7 @@ std::string hessian_of_sum(const PlacedBlend& part, const Vec3d& p) {
 
 std::string curvature_of_field(const FieldProgram& program, const Vec3d& p) {
   const HessianJet f = second_order_value(program, variables_at<HessianJet>(p));
-  const auto& c = f.curvature;
-  const Matrix3 hessian{{Vec3d{c[0], c[5], c[4]}, Vec3d{c[5], c[1], c[3]}, Vec3d{c[4], c[3], c[2]}}};
+  const Matrix3 hessian = hessian_of(f);
   const Curvature curvature = curvature_of(gradient_of(f), hessian);
   return fmt::format(R"(, "hessian": [{}, {}, {}], "mean_curvature": {}, "gaussian_curvature": {})",
                      json(hessian.rows[0]), json(hessian.rows[1]), json(hessian.rows[2]), json(curvature.mean),
