@@ -14,12 +14,14 @@
 #include "field/blend/angle/local_contact.h"
 #include "field/kernel/inverse_family.h"
 #include "field/program/field_program.h"
+#include "tests/field/program_of.h"
 #include "tests/field/random.h"
 
 namespace marrow {
 namespace {
 
 using test::numeric_gradient;
+using test::program_of;
 using test::Random;
 using test::random_blend;
 using test::relative;
@@ -138,18 +140,6 @@ Primitive with(auto skeleton) {
   Primitive p;
   p.skeleton = std::move(skeleton);
   return p;
-}
-
-FieldProgram program_of(const std::vector<Primitive>& primitives, const Alpha& alpha, FieldDescription description = {},
-                        const Kernel& kernel = {}) {
-  Blend blend;
-  blend.alpha = alpha;
-  blend.kernel = kernel;
-  for (const Primitive& p : primitives) blend.of.push_back(description.add({.what = p, .where = {}}));
-  description.root = description.add({.what = blend, .where = {}});
-  auto program = compile(description);
-  EXPECT_TRUE(program) << (program ? "" : program.why().front().message);
-  return program ? *std::move(program) : FieldProgram{};
 }
 
 // Angles that are linear along a segment do not change when it is cut; a curve interpolates them as its radius.

@@ -9,13 +9,16 @@
 #include "field/kernel/profile.h"
 #include "field/program/field_program.h"
 #include "field/skeleton/skeletons.h"
+#include "tests/field/program_of.h"
 #include "tests/field/random.h"
+#include "tests/field/random_kernel.h"
 
 namespace marrow {
 namespace {
 
 using test::numeric_gradient;
 using test::Random;
+using test::random_kernel;
 using test::relative;
 
 constexpr auto second = Derivatives::Second;
@@ -25,13 +28,6 @@ ArcSkeleton ring_of(double major, double radius) {
   ring.major = major;
   ring.radius_from = ring.radius_to = radius;
   return ring;
-}
-
-Kernel random_kernel(Random& random, int i) {
-  const int n = random.whole(3, 9);
-  if (i % 3 == 0) return {.degree = n};
-  return i % 3 == 1 ? Kernel{KernelFamily::Cauchy, n, random.between(0.5, 2)}
-                    : Kernel{KernelFamily::Compact, n, random.between(1.5, 3)};
 }
 
 // The largest kernel value over many places of a skeleton: below the field, and near it.
@@ -154,16 +150,8 @@ TEST(DistanceField, SegmentsAgreeWithTheirOwnForm) {
   }
 }
 
-FieldProgram program_of(const Primitive& primitive, const Kernel& kernel, const Alpha& alpha = AlphaSum{}) {
-  FieldDescription description;
-  Blend blend;
-  blend.kernel = kernel;
-  blend.alpha = alpha;
-  blend.of = {description.add({.what = primitive, .where = {}})};
-  description.root = description.add({.what = blend, .where = {}});
-  auto program = compile(description);
-  EXPECT_TRUE(program) << (program ? "" : program.why().front().message);
-  return program ? *std::move(program) : FieldProgram{};
+FieldProgram program_of(const Primitive& primitive, const Kernel& kernel) {
+  return test::program_of({primitive}, AlphaSum{}, {}, kernel);
 }
 
 // A polyline is one primitive: it has no bulge where its segments meet, and its surface is its radius away.

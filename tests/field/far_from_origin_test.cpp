@@ -6,11 +6,13 @@
 #include "field/skeleton/second_order.h"
 #include "field/skeleton/skeletons.h"
 #include "tests/field/random.h"
+#include "tests/field/random_kernel.h"
 
 namespace marrow {
 namespace {
 
 using test::Random;
+using test::random_kernel;
 
 // A million units away; whole multiples of 2^-20 so far out are doubles, so that moving them there rounds nothing.
 const Vec3d shift{0x1p20, -0x1p20, 0x1p19};
@@ -44,13 +46,6 @@ TriangleSkeleton moved(TriangleSkeleton s) {
 ArcSkeleton moved(ArcSkeleton s) {
   s.center += shift;
   return s;
-}
-
-Kernel random_kernel(Random& random, int i) {
-  const int n = random.whole(3, 9);
-  if (i % 3 == 0) return {.degree = n};
-  return i % 3 == 1 ? Kernel{KernelFamily::Cauchy, n, random.between(0.5, 2)}
-                    : Kernel{KernelFamily::Compact, n, random.between(1.5, 3)};
 }
 
 void expect_same(const SkeletonSample& a, const SkeletonSample& b) {

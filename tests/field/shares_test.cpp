@@ -14,20 +14,15 @@
 #include "field/skeleton/second_order.h"
 #include "field/skeleton/skeletons.h"
 #include "tests/field/random.h"
+#include "tests/field/random_kernel.h"
 
 namespace marrow {
 namespace {
 
 using test::numeric_gradient;
 using test::Random;
+using test::random_kernel;
 using test::relative;
-
-Kernel random_kernel(Random& random, int i) {
-  const int n = random.whole(3, 8);
-  if (i % 3 == 0) return {.degree = n};
-  return i % 3 == 1 ? Kernel{KernelFamily::Cauchy, n, random.between(0.5, 2)}
-                    : Kernel{KernelFamily::Compact, n, random.between(1.5, 3)};
-}
 
 struct Sums {
   double share = 0;
@@ -57,7 +52,7 @@ TEST(Shares, AnArcIsManyShortSegments) {
   Random random(20261123);
   for (int i = 0; i < 40; ++i) {
     SCOPED_TRACE(i);
-    const Kernel kernel = random_kernel(random, i);
+    const Kernel kernel = random_kernel(random, i, 8);
     const ArcSkeleton arc = random.arc();
     const Vec3d p = random.vector(2);
     const double f = arc_field<Derivatives::ScaleInvariant>(arc, p, kernel).value;
@@ -73,7 +68,7 @@ TEST(Shares, OfTheCornersOfATriangleSumToItsField) {
   Random random(20261124);
   for (int i = 0; i < 60; ++i) {
     SCOPED_TRACE(i);
-    const Kernel kernel = random_kernel(random, i);
+    const Kernel kernel = random_kernel(random, i, 8);
     const TriangleSkeleton t = random.triangle();
     const TriangleSkeleton turned{{t.vertices[1], t.vertices[2], t.vertices[0]}, {t.radii[1], t.radii[2], t.radii[0]}};
     const Vec3d p = random.vector(2);
@@ -134,7 +129,7 @@ TEST(Shares, AndDirectionsHaveTheirDerivatives) {
   Checks checks;
   for (int i = 0; i < 60; ++i) {
     SCOPED_TRACE(i);
-    const Kernel kernel = random_kernel(random, i);
+    const Kernel kernel = random_kernel(random, i, 8);
     const Vec3d p = random.vector(2);
     const SegmentSkeleton segment = random.segment();
     expect_shares(segment, p, kernel, checks);

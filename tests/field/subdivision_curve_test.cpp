@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "field/program/field_program.h"
+#include "tests/field/distance_to.h"
 #include "tests/field/random.h"
 
 namespace marrow {
@@ -36,11 +37,8 @@ double arc_length(const PolylineSkeleton& line) {
 
 double distance_to(const PolylineSkeleton& line, const Vec3d& p) {
   double least = 1e300;
-  for (std::size_t i = 1; i < line.points.size(); ++i) {
-    const Vec3d a = line.points[i - 1], ab = line.points[i] - a;
-    const double t = std::clamp(dot(p - a, ab) / length_squared(ab), 0.0, 1.0);
-    least = std::min(least, length(p - a - ab * t));
-  }
+  for (std::size_t i = 1; i < line.points.size(); ++i)
+    least = std::min(least, test::distance_to(SegmentSkeleton{line.points[i - 1], line.points[i], 1, 1}, p));
   return least;
 }
 

@@ -293,10 +293,8 @@ TEST(EmbreeSurfaces, OfNothingHitsNothing) {
 }
 
 TEST(EmbreeSurfaces, PlanesCompeteWithSolids) {
-  BlendField ball;
-  ball.points.add({{0, 0, 0}, 1}, {});
   std::vector<PlacedSolid> solids;
-  auto solid = FieldSolid::make(placed(ball), MaterialId{}, {});
+  auto solid = FieldSolid::make(placed(ball({0, 0, 0}, 1)), MaterialId{}, {});
   ASSERT_TRUE(solid);
   solids.push_back({std::move(*solid), ObjectId{0}});
   const PlacedPlane floor{{0, 0, -2}, UnitVec3::unchecked({0, 0, 1}), MaterialId{}, ObjectId{1}};

@@ -29,12 +29,6 @@ Body body_of(std::vector<PlacedBlend> parts, std::vector<FieldTree> trees = {}) 
   return body;
 }
 
-BlendField ball(const Vec3d& at, double radius) {
-  BlendField blend;
-  blend.points.add({at, radius}, {});
-  return blend;
-}
-
 // Into the corner of eight cells that stands on the surface, or beside it.
 Ray into_corner(Random& random, const Vec3d& corner) {
   const Vec3d from = random_direction(random) * random.between(0, 0.9);

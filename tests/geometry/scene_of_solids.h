@@ -20,6 +20,12 @@ inline PlacedBlend placed(BlendField blend, const Affine& world_from_local = {})
   return {std::move(blend), world_from_local, world_from_local.inverse()};
 }
 
+inline BlendField ball(const Vec3d& at, double radius) {
+  BlendField blend;
+  blend.points.add({at, radius}, {});
+  return blend;
+}
+
 /// Solids under Embree, and the same ones asked one element after the other.
 class SolidScene {
  public:

@@ -10,12 +10,6 @@
 namespace marrow::test {
 namespace {
 
-BlendField ball(const Vec3d& at, double radius) {
-  BlendField blend;
-  blend.points.add({at, radius}, {});
-  return blend;
-}
-
 PlacedPlane plane(const Vec3d& point, const Vec3d& normal) {
   return {point, normalize(normal), MaterialId{}, ObjectId{100}};
 }

@@ -10,6 +10,7 @@
 
 #include "field/program/field_program.h"
 #include "tests/stress/change_search.h"
+#include "tests/stress/hits.h"
 #include "tests/stress/ulp_of_float.h"
 
 namespace marrow::test {
@@ -136,12 +137,6 @@ void judge_way(const TreeScene& scene, const Ray& ray, const Interval& way, std:
   }
   ++(certified ? v.missed : v.lost);
   note(v, scene, ray, family, certified ? "missed" : "lost", depth);
-}
-
-Ray reversed(const Ray& ray, double length) { return {ray.at(length), -ray.direction, 0, length}; }
-
-bool same(const std::optional<SurfaceHit>& a, const std::optional<SurfaceHit>& b) {
-  return a.has_value() == b.has_value() && (!a || (a->t == b->t && a->outside == b->outside));
 }
 
 }  // namespace

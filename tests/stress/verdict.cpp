@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "tests/stress/hits.h"
 #include "tests/stress/ulp_of_float.h"
 
 namespace marrow::test {
@@ -164,8 +165,6 @@ double depth_after(const StressScene& scene, const Ray& ray, double t, double en
   return scene.oracle().largest_excess(ray, std::max(0.0, t - 1e-3 * radius), std::min(t + radius, end));
 }
 
-Ray reversed(const Ray& ray, double length) { return {ray.at(length), -ray.direction, 0, length}; }
-
 }  // namespace
 
 void Verdict::add(const Verdict& b) {
@@ -196,14 +195,6 @@ void Verdict::add(const Verdict& b) {
   merge(wrong_side_rays, b.wrong_side_rays);
   merge(limit_rays, b.limit_rays);
 }
-
-namespace {
-
-bool same(const std::optional<SurfaceHit>& a, const std::optional<SurfaceHit>& b) {
-  return a.has_value() == b.has_value() && (!a || (a->t == b->t && a->outside == b->outside));
-}
-
-}  // namespace
 
 void judge(const StressScene& scene, const Ray& ray, const char* family, bool from_afar, Verdict& v) {
   RayRecord record;

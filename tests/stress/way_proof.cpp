@@ -10,6 +10,7 @@
 
 #include "field/math/elementary.h"
 #include "field/skeleton/skeleton_sample.h"
+#include "tests/field/distance_to.h"
 
 namespace marrow::test {
 namespace {
@@ -24,12 +25,6 @@ constexpr int most_places = 64, most_pieces = 1000;
 constexpr double farthest = 0.7;
 // What sums are known to, and a coordinate.
 constexpr double sum_rounding = 1e-12, coordinate_rounding = 4e-16;
-
-double distance_to(const SegmentSkeleton& s, const Vec3d& p) {
-  const Vec3d along = s.to - s.from;
-  const double at = std::clamp(dot(p - s.from, along) / length_squared(along), 0.0, 1.0);
-  return length(p - s.from - along * at);
-}
 
 double distance_to_nearest(const BlendField& blend, const Vec3d& p) {
   double d = std::numeric_limits<double>::infinity();

@@ -6,18 +6,13 @@
 #include <limits>
 
 #include "field/math/elementary.h"
+#include "tests/field/distance_to.h"
 
 namespace marrow::test {
 namespace {
 
 // Shorter steps than this times the distance to the skeleton are taken uncertified.
 constexpr double shortest_step = 1e-6;
-
-double distance_to(const SegmentSkeleton& s, const Vec3d& p) {
-  const Vec3d along = s.to - s.from;
-  const double at = std::clamp(dot(p - s.from, along) / length_squared(along), 0.0, 1.0);
-  return length(p - s.from - along * at);
-}
 
 // (1-q)^-m - 1 - m q, from above: Lagrange's remainder.
 double remainder(int m, double q) { return m * (m + 1) / 2.0 * q * q / integer_power(1 - q, m + 2); }
