@@ -18,6 +18,7 @@
 
 namespace marrow {
 
+/// Both of its sides are surface; the normal of a hit looks to where the ray comes from.
 struct PlacedPlane {
   Vec3d point;
   UnitVec3 normal;
@@ -25,9 +26,15 @@ struct PlacedPlane {
   ObjectId object;
 };
 
+/// Owns the solids, the planes, Embree's device and every hierarchy it has made, until it ends: hits that are given on
+/// as FieldAround must not outlive it. Solids of one ObjectId are one body, without surface inside (united_solids.h).
+/// Safe to use from many threads; refine() may be called while rays are under way, by several threads in turn, and
+/// changes how soon rays are answered, never what they are answered. Once made, nothing fails: a refine() for whose
+/// hierarchy there is no memory leaves things as they were.
 class EmbreeSurfaces final : public Surfaces {
  public:
-  /// `config` is Embree's device string, e.g. "threads=2,isa=avx2".
+  /// `config` is Embree's device string, e.g. "threads=2,isa=avx2". Errors: one that Embree does not take; hierarchies
+  /// that it cannot build.
   static Result<std::unique_ptr<EmbreeSurfaces>> make(std::vector<PlacedSolid>, std::vector<PlacedPlane>,
                                                       const std::string& config);
 
@@ -41,8 +48,9 @@ class EmbreeSurfaces final : public Surfaces {
   Box3 bounds() const override { return extent_; }
   void refine() const override;
 
+  /// As they were given.
   const std::vector<PlacedSolid>& solids() const { return solids_; }
-  double build_seconds = 0;
+  double build_seconds = 0;  ///< for whoever makes it to set and to report
 
  private:
   EmbreeSurfaces(std::vector<PlacedSolid> solids, std::vector<PlacedPlane> planes)
