@@ -29,7 +29,7 @@ class BoundedCurve {
   int height_power() const { return e_; }          ///< e
   double height_scale() const { return g_0_; }     ///< g_0
 
-  /// Of the continued curve; u = sqrt(v), that of the top from there on.
+  /// A point of the continued curve g(f); u = sqrt(v), that of the top from there on.
   struct Place {
     double f, g, u;
   };

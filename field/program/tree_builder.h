@@ -34,7 +34,8 @@ class TreeBuilder {
 
  private:
   static constexpr std::uint32_t none = 0xffffffff;
-  // Where a node of the description is in the tree: a record, and what places it.
+  // What a node of the description has become: a record, and the placement that is still to be put above it, by its
+  // index; 0: none.
   struct Place {
     std::uint32_t record = none, map = 0;
   };

@@ -13,6 +13,7 @@
 
 namespace marrow::tree {
 
+/// Where a node is asked for its field: one point, or all points of an enclosure. Of a point that is its coordinates.
 template <Number X>
 struct Place {
   Vec3<X> p;

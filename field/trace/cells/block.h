@@ -25,8 +25,9 @@ struct CompactLevel;
 enum class LevelKind;
 class Strands;
 
-/// Coordinates of the block: x = (p - center) / half. Its levels are made when the first ray needs them; safe to use
-/// from many threads.
+/// The field of one blend in one cell: the sources that are near, a polynomial of all others, and which parts of the
+/// cell may hold surface. Coordinates of the block: x = (p - center) / half, the cell is [-1, 1]^3. Its levels are made
+/// when the first ray needs them, and are functions of the cell alone; safe to use from many threads.
 class alignas(64) Block : public InHugePages {
  public:
   struct Context {
