@@ -10,7 +10,7 @@ namespace marrow {
 
 /// E(mu): the share of light arriving at cosine mu that a single bounce between facets returns, and its mean over
 /// diffuse light. Tabulated for one width alpha and one Fresnel term by quadrature, and interpolated linearly in
-/// sqrt(mu). Checked against physics.md A10.
+/// sqrt(mu). Without Fresnel it is 1 - ln 2 at alpha = mu = 1.
 class DirectionalAlbedo {
  public:
   /// `fresnel` maps the cosine between facet and ray to a reflectance.

@@ -12,7 +12,7 @@ namespace marrow {
 /// with x = distance / radius. g rises to its top at v* = e / (e+1) (s x = 1/sqrt n, x = R/sqrt n) and returns to 0 on
 /// the skeleton, so that it has two branches. Only the outer one (f <= f*) tells a lone skeleton from a sum.
 /// Here g goes on beyond f* at the height of its top: continuous, with a continuous slope, and never falling, which is
-/// what a projection needs (field-maths 1 leaves open what lies beyond).
+/// what a projection needs (Zanni et al. 2015 leave open what lies beyond).
 /// Where f* is 1 but for rounding (R = sqrt n, s = 1/sqrt n) g levels off at f = 1 - 1e-10, so that what the operator
 /// brings to the top is outside for certain.
 /// By u = sqrt(v) all powers are whole: but for u itself, a root of f, nothing here is transcendental.

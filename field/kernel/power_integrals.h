@@ -12,7 +12,7 @@ namespace marrow {
 ///   J(0,m) = ([t d^(2-m)] + (m-3) J(0,m-2)) / ((m-2) h^2),   J(1,m) = -[d^(2-m)] / (m-2),
 ///   J(j,m) = J(j-2,m-2) - h^2 J(j-2,m),   d = sqrt(t^2 + h^2), [.] = value at t2 minus value at t1.
 /// Only m of one parity, `parity` to max_m. Accurate (1e-13) where the interval holds 0 and is not short
-/// against h; elsewhere the recurrences cancel.   [field-maths 3.3]
+/// against h; elsewhere the recurrences cancel.
 class PowerIntegrals {
  public:
   /// t1 < t2, h_squared > 0. For powers up to t^(k+i) over d^(n+2i), which a radius of power k asks for: holds J(j, m)

@@ -1,4 +1,4 @@
-// Powers of one half, and the normalisations of field-maths 1.
+// Powers of one half, and normalisations in closed form.
 #include "field/kernel/profile.h"
 
 #include <cmath>

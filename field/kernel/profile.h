@@ -14,7 +14,7 @@ struct ProfileSample {
 /// infinite line or an infinite plane.
 ///   inverse  y^(-m/2),               m = n - 1 + dimension
 ///   Cauchy   (1 + s^2 y)^(-m/2),     m = n - 1 + dimension
-///   compact  (1 - y / R^2)^(m/2),    m = n + 1 - dimension; 0 beyond y = R^2     [field-maths 1]
+///   compact  (1 - y / R^2)^(m/2),    m = n + 1 - dimension; 0 beyond y = R^2     [degrees: inverse_family.h]
 /// Precondition: s > 0, R > 1.
 class Profile {
  public:

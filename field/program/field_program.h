@@ -64,7 +64,7 @@ FieldSample value_and_gradient(const FieldTree&, const Vec3d& p);
 /// The `value` of evaluate(), bit for bit, at less cost.
 double value(const FieldProgram&, const Vec3d& p);
 
-/// Of the part that gives the value.   [physics 2.3]
+/// Of the part that gives the value.
 MaterialWeights material_weights(const FieldProgram&, const Vec3d& p);
 
 /// With gradient and Hessian, composed with those of p.

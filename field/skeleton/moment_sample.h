@@ -17,7 +17,7 @@ inline Matrix3 si_jacobian_of(double even, double k, std::span<const double, 3> 
 }
 
 /// `along` is the direction of the line, `across` goes from the foot of the point on it to the point, `degree` is m of
-/// the kernel and `scale` multiplies everything.   [field-maths 3.3, 5]
+/// the kernel and `scale` multiplies everything.
 template <Derivatives Order>
 SkeletonSample sample_of(const SegmentMoments& m, const UnitVec3& along, const Vec3d& across, int degree,
                          double scale) {

@@ -26,18 +26,18 @@ struct SecondOrderSample {
 
 /// Integrals: the same quadratures as for the fields themselves, with the second derivatives of the kernel under the
 /// integral; relative error below 1e-12. Under the compact kernel, whose edge moves with p, the nodes of a segment move
-/// with it; arcs and triangles there, and only there, take differences of first derivatives (1e-6).   [field-maths 1-3]
+/// with it; arcs and triangles there, and only there, take differences of first derivatives (1e-6).
 SecondOrderSample second_order(const PointSkeleton&, const Vec3d& p, const Kernel&);
 SecondOrderSample second_order(const SegmentSkeleton&, const Vec3d& p, const Kernel&);
 SecondOrderSample second_order(const TriangleSkeleton&, const Vec3d& p, const Kernel&);
 SecondOrderSample second_order(const ArcSkeleton&, const Vec3d& p, const Kernel&);
 
-/// The kernel of the smallest scaled distance; the place that is nearest moves with p.   [field-maths 3.2]
+/// The kernel of the smallest scaled distance; the place that is nearest moves with p.   [Zanni et al. 2015, eq. 4]
 SecondOrderSample second_order_by_distance(const SegmentSkeleton&, const Vec3d& p, const Kernel&);
 SecondOrderSample second_order_by_distance(const TriangleSkeleton&, const Vec3d& p, const Kernel&);
 SecondOrderSample second_order_by_distance(const ArcSkeleton&, const Vec3d& p, const Kernel&);
 
-/// Cani and Hornus 2001, as of cani_hornus_field().   [field-maths 8.1]
+/// Cani and Hornus 2001, as of cani_hornus_field().
 SecondOrderSample second_order_of_cani_hornus(const SegmentSkeleton&, const Vec3d& p);
 
 /// What shares.h tells, with Hessians. The nearest ones are places alone, not weighted by the field.

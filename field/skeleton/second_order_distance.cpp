@@ -46,7 +46,7 @@ Place fixed(const NearestPlace& q) {
   return {variables_at<HessianJet>(q.to_point), X(q.radius), {X(q.shares[0].value), X(q.shares[1].value)}};
 }
 
-// Where foot + slope height^2 / (radius at the foot) lies.   [field-maths 3.2]
+// Where foot + slope height^2 / (radius at the foot) lies.   [segment_place.h]
 Place moving_on(const SegmentSkeleton& s, const Vec3<X>& p) {
   const double length = marrow::length(s.to - s.from), slope = (s.radius_to - s.radius_from) / length;
   const Vec3d u = (s.to - s.from) / length;

@@ -18,7 +18,6 @@ struct SegmentPlace {
 
 /// With p at height h over the line and t from its foot, e^2 = (t^2 + h^2) / (tau_f + sigma t)^2 is stationary at
 /// t = sigma h^2 / tau_f, a minimum where tau_f > 0. `size` and `u`: length and direction of the segment.
-///                                                                                          [field-maths 3.2]
 inline SegmentPlace segment_place(const SegmentSkeleton& s, const Vec3d& p, double size, const Vec3d& u) {
   const Vec3d from_start = p - s.from;
   const double foot = dot(from_start, u), slope = (s.radius_to - s.radius_from) / size;

@@ -97,7 +97,7 @@ struct BlendTracer::State {
     for (std::size_t i = 0; i < tree.tile_count(); ++i) bounds.include(tree.tile_box(i));
   }
 
-  // |dC/dalpha| <= n - 1 at the surface: |g(f) - G| at alpha = pi/2, with g(1) = n - 1 and G <= 2 g (tracing.md 2);
+  // |dC/dalpha| <= n - 1 at the surface: |g(f) - G| at alpha = pi/2, with g(1) = n - 1 and G <= 2 g (tips, n = 3);
   // checked numerically for other angles. The share of alpha is a quotient of sums of some 1. What is known of strands
   // is an estimate.
   double largest_error(const BlockLevel& level, const SharePatches* patches) const {

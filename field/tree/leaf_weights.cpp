@@ -1,4 +1,4 @@
-// Who contributes how much to the value of a tree at a point.   [physics 2.3]
+// Who contributes how much to the value of a tree at a point.
 #include <algorithm>
 #include <optional>
 

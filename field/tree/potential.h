@@ -12,7 +12,7 @@
 
 namespace marrow {
 
-/// (1 - x^2)^3, the Blobtree's usual one.   [Wyvill, McPheeters, Wyvill 1986; field-maths 8.1]
+/// (1 - x^2)^3, the Blobtree's usual one.   [Wyvill, McPheeters, Wyvill 1986]
 struct WyvillProfile {
   static constexpr NodeInfo info{"wyvill", "(1 - x^2)^3, the Blobtree's usual one."};
   double range = 1;

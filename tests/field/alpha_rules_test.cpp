@@ -264,7 +264,7 @@ TEST(LocalContact, JoinsUnequalBallsWhenTheyTouch) {
       blend.degree = n;
       blend.alpha = contact_alpha(n);
       EXPECT_NEAR(joining_distance(blend, ratios[k]), late[n - 3][k], 2e-4)
-          << n << ' ' << ratios[k];  // field-maths 6.1
+          << n << ' ' << ratios[k];  // recomputed in 40 digits
       blend.local_contact =
           std::make_shared<const LocalContact>(Kernel{.degree = n}, true, Projection::Paper, true, false);
       const double joined = joining_distance(blend, ratios[k]);
@@ -319,7 +319,7 @@ TEST(LocalContact, IsContactForEqualSkeletonsAndClosesTheTorusWhenItTouchesItsel
     EXPECT_NEAR(alpha_at(blend, {-1, 0.9, 0}).value, contact_alpha(n), 1e-3) << n;
     blend.points = {};
     blend.arcs.add(ArcSkeleton{}, {});
-    const double keys[] = {-0.492978071, -0.745484658, -0.858572351, -0.925006348};  // field-maths 6.3
+    const double keys[] = {-0.492978071, -0.745484658, -0.858572351, -0.925006348};  // recomputed in 40 digits
     EXPECT_NEAR(alpha_at(blend, {0, 0, 0}).value, keys[n - 3], 1e-8) << n;
     EXPECT_NEAR(corrected_value(blend, {0, 0, 0}), 1, 1e-9) << n;
     blend.arcs.skeletons[0].radius_from = blend.arcs.skeletons[0].radius_to = 0.97;

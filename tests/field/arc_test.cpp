@@ -49,7 +49,7 @@ TEST(Arc, FieldIsTheSumOfItsParts) {
   EXPECT_LE(worst, 1e-12);
 }
 
-// n = 4: f = 4 tau^3 rho D / (D^2 - C^2)^1.5.   [field-maths 3.5]
+// n = 4: f = 4 tau^3 rho D / (D^2 - C^2)^1.5.
 TEST(Arc, CircleOfDegreeFourIsItsClosedForm) {
   Random random(92);
   for (int i = 0; i < 300; ++i) {

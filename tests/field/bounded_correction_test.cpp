@@ -88,7 +88,7 @@ TEST(BoundedCurve, HasItsInverseAndItsSlope) {
     EXPECT_LE(relative(curve.on_line(c, s, curve.at(f) * c + f * s), f), 1e-11) << f / curve.top_field();
   }
   const BoundedCurve curve({KernelFamily::Cauchy, 4, 1});
-  EXPECT_NEAR(curve.top_field(), 2.0238577, 1e-7);  // field-maths 1
+  EXPECT_NEAR(curve.top_field(), 2.0238577, 1e-7);  // at s x = 1 / sqrt(n)
   EXPECT_NEAR(curve.top(), 2.4286292, 1e-7);
 }
 
@@ -252,7 +252,7 @@ TEST(BoundedCorrection, GradientsOfBlendsAreTheDerivativesOfTheirCorrectedFields
   EXPECT_GT(in_branch, 30);
 }
 
-// Outward from the middle of two equal skeletons the exact projection never rises (field-maths 5: no cavity).
+// Outward from the middle of two equal skeletons the exact projection never rises.
 TEST(BoundedCorrection, LeavesNoCavityBetweenEqualSkeletonsWithExactProjection) {
   Random random(207);
   double worst_paper = 0;

@@ -1,4 +1,4 @@
-// The published and the recomputed key angles (field-maths 6.1, 6.2).
+// The published and the recomputed key angles (Zanni et al. 2015, sec. 5).
 #include "field/blend/angle/contact.h"
 
 #include <cmath>
@@ -49,7 +49,7 @@ TEST(Contact, AtZeroAngleBallsJoinAtTheDistanceOfTheClosedForm) {
     BlendField blend;
     blend.degree = n;
     blend.alpha = 0;
-    const double d = std::sqrt(n) * pow(2 / std::sqrt(n + 1), (n + 1.0) / n);  // field-maths 0, line 7
+    const double d = std::sqrt(n) * pow(2 / std::sqrt(n + 1), (n + 1.0) / n);  // as Zanni et al. 2015 print it
     blend.points.add({{0, 0, 0}, 1}, {});
     blend.points.add({{d, 0, 0}, 1}, {});
     EXPECT_NEAR(corrected_value(blend, {d / 2, 0, 0}), 1, 1e-12) << n;

@@ -112,7 +112,7 @@ TEST(DistanceField, GradientsAndJacobianAreTheDerivatives) {
   for (const int count : {segments, triangles, arcs}) EXPECT_GT(count, 300);
 }
 
-// On the reference curve, whatever the shape (field-maths 3.2): |grad_S f| is that of a point with the same field.
+// On the reference curve, whatever the shape: |grad_S f| is that of a point with the same field.
 TEST(DistanceField, LiesOnTheReferenceCurve) {
   Random random(403);
   for (int i = 0; i < 600; ++i) {
@@ -193,7 +193,7 @@ TEST(CaniHornus, IsTheIntegralForOneRadiusAndHasTheValuesOfTheStudyForOthers) {
     const Vec3d p = random.vector(2);
     EXPECT_LE(relative(cani_hornus_field<second>(s, p).value, segment_field<second>(s, p, 3).value), 1e-13);
   }
-  // field-maths 8.1: a segment of length 10 and slope 0.15, at its middle and near its end
+  // A segment of length 10 and slope 0.15, at its middle and near its end
   const SegmentSkeleton s{{0, 0, 0}, {10, 0, 0}, 0.25, 1.75};
   EXPECT_NEAR(cani_hornus_field<second>(s, {5, 1, 0}).value, 0.9806, 5e-5);
   EXPECT_NEAR(segment_field<second>(s, {5, 1, 0}, 3).value, 1.0106, 5e-3);

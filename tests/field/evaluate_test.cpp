@@ -113,7 +113,7 @@ TEST(Blend, StrongestMaterialIsThatOfTheLargestShare) {
   EXPECT_EQ(strongest_material(blend, {0.5, 0, 0}), MaterialId{7});
 }
 
-// w_i = f_i / f, and a strand that is cut into many pieces weighs what it does as one.   [physics 2.3]
+// w_i = f_i / f, and a strand that is cut into many pieces weighs what it does as one.
 TEST(Blend, MaterialWeightsDoNotDependOnHowASkeletonIsCut) {
   Random random(37);
   for (int round = 0; round < 50; ++round) {

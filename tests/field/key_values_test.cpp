@@ -1,4 +1,4 @@
-// The published and the recomputed key values of topology control (field-maths 6), and the laws around them.
+// The published and the recomputed key values of topology control, and the laws around them.
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -110,7 +110,7 @@ TEST(KeyValues, NoCavityBetweenEqualBallsWithTheExactProjection) {
 }
 
 // With the paper's projection two touching balls join in a ring before they join in the middle, for angles in a narrow
-// interval below contact (field-maths 5; docs/topology.md shows one).
+// interval below contact (docs/topology.md shows one).
 TEST(KeyValues, TheRingIntervalsOfThePapersProjection) {
   const double begins[] = {0.92398, 1.16237, 1.27901};
   for (int n = 3; n <= 5; ++n) {

@@ -1,5 +1,5 @@
 // An oracle for fields: the definitions themselves, integrated in any precision, sharing nothing with the library but
-// the plain data of skeletons. No closed form, no recurrence, no stable rearrangement.   [field-maths 1-5]
+// the plain data of skeletons. No closed form, no recurrence, no stable rearrangement.   [Zanni et al. 2015, sec. 3, 4]
 #pragma once
 
 #include <algorithm>

@@ -80,7 +80,7 @@ double operator_error(double value, double expected) {
   return std::max(std::fabs(value), std::fabs(expected)) < 1e-60 ? 0 : relative(value, expected);
 }
 
-// field-maths sec. 10: 1e-11; nearer to a skeleton the offset from it has lost digits, 5e-12 there.
+// 1e-11; nearer to a skeleton the offset from it has lost digits, 5e-12 there.
 double field_tolerance(const std::string& tag) { return tag == "segment_near_skeleton" ? 5e-12 : 1e-11; }
 
 TEST(Reference, FieldsAndGradients) {

@@ -1,4 +1,4 @@
-// Energy of single bounces against physics.md A10.
+// Energy of single bounces against quadrature.
 #include "materials/directional_albedo.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ constexpr Row rows[] = {{.0625, .995690, .988324, .896773, .987370}, {.10, .9883
                         {.25, .915812, .857263, .891622, .882324},   {.50, .687849, .698251, .860105, .700241},
                         {.75, .463917, .564623, .810714, .536303},   {1.0, .306853, .450694, .760210, .409137}};
 
-TEST(DirectionalAlbedo, EqualsTheQuadratureOfTheStudy) {
+TEST(DirectionalAlbedo, EqualsQuadrature) {
   for (const Row& row : rows) {
     const DirectionalAlbedo e = white(row.alpha);
     EXPECT_NEAR(e(1), row.at_1, 1e-3) << row.alpha;

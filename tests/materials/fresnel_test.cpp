@@ -1,4 +1,4 @@
-// Reflectances against the closed forms of physics.md A7, A8, A9.
+// Reflectances against closed forms: of dielectrics, their means over the hemisphere [Walsh 1926], of conductors.
 #include "materials/fresnel.h"
 
 #include <numbers>

@@ -1,4 +1,4 @@
-// Laws of the microfacet distribution: physics.md A11.
+// Laws of the microfacet distribution [Heitz 2014].
 #include "materials/ggx.h"
 
 #include <gtest/gtest.h>

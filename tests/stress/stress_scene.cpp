@@ -70,7 +70,7 @@ Draft nearly_touching(Random& random) {
 }
 
 // Two points two radii apart: just below the angle of contact their middle is outside, with a ring inside around it
-// (field-maths.md: alpha in (0.92398, 0.93026) for n = 3, (1.16237, 1.16545) for n = 4).
+// (alpha in (0.92398, 0.93026) for n = 3, (1.16237, 1.16545) for n = 4).
 Draft ring(Random& random) {
   const bool cubic = random.between(0, 1) < 0.5;
   Draft d{blend_of({cubic ? 3 : 4, cubic ? random.between(0.92398, 0.93026) : random.between(1.16237, 1.16545)})};

@@ -8,7 +8,7 @@
 
 namespace marrow::test {
 
-/// Steps are certified by second-order bounds of f and grad_S f (B3 and B4 of tracing.md) from exact values at one
+/// Steps are certified by second-order bounds of f and grad_S f (taylor_remainder.h) from exact values at one
 /// point, with the moments M2 <= f / d^2 and M3 <= K / d, where K comes from the trace of the Jacobian. For
 /// alpha < 0 it relies on C having its largest value over an interval of f at an end.
 class Oracle {

@@ -1,4 +1,4 @@
-// The two ways to find light agree: physics.md A21.
+// The two ways to find light agree, and so does their combination.
 #include "renderer/transport/integrators/path_tracer.h"
 
 #include <gtest/gtest.h>

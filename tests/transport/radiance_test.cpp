@@ -1,4 +1,4 @@
-// Radiance of scenes with closed forms (physics.md 2.4). Seeds are fixed; bounds are 4 standard errors of the means of
+// Radiance of scenes with closed forms. Seeds are fixed; bounds are 4 standard errors of the means of
 // 64 batches, plus what the interpolated tables of materials may be off.
 #include <numbers>
 

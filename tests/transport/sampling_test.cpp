@@ -1,4 +1,4 @@
-// Samples are well spread and repeatable: physics.md A29; the filter is sampled as it is.
+// Samples are well spread and repeatable; the filter is sampled as it is.
 #include <cmath>
 #include <set>
 #include <vector>

@@ -41,7 +41,7 @@ TEST(Convolution, LongSegmentHasItsRadius) {
   EXPECT_NEAR(line.value(Vec3d{3, 0.7, 0}), 1, 1e-10);
 }
 
-// field-maths 8.1: in the middle of a segment of length 10 whose radius rises by 0.15 for each unit, from 0.25 on.
+// In the middle of a segment of length 10 whose radius rises by 0.15 for each unit, from 0.25 on.
 TEST(Convolution, RadiusIsThatOfTheFoot) {
   const ConvolutionSegment rod{{0, 0, 0}, {10, 0, 0}, {0.25, 1.75}};
   const ConvolutionSegment same{{0, 0, 0}, {10, 0, 0}, {1}};

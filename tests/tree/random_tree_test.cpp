@@ -120,7 +120,7 @@ class LeafWeights : public testing::Test {};
 using Kinds = tree::Extended<AnyNode, AffineWarp, CrispUnion>::type;
 TYPED_TEST_SUITE(LeafWeights, KindsOf<Kinds>::type, NameOfKind);
 
-// w_i = f_i |dF/df_i|, normalised, against differences of the operator.   [physics.md 2.3]
+// w_i = f_i |dF/df_i|, normalised, against differences of the operator.
 TYPED_TEST(LeafWeights, AreContributions) {
   Random random(20260109);
   int checked = 0;

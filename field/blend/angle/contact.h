@@ -6,7 +6,7 @@
 namespace marrow {
 
 /// The alpha with C(2, 0) = 1: midway between two equal points, infinite lines or planes two radii apart, f = 2
-/// and grad_S f = 0. Found by bisection to the last bits; in (0, pi/2).   [Zanni et al. 2015, sec. 5; field-maths 6.1]
+/// and grad_S f = 0. Found by bisection to the last bits; in (0, pi/2).   [Zanni et al. 2015, sec. 5]
 double contact_alpha(int degree, bool cavity = true, Projection = Projection::Paper);
 
 /// The same for any kernel. Where even alpha = 0 joins two such skeletons before they touch (C(2, 0) >= 1 there: wide

@@ -29,7 +29,7 @@ struct Strand {
 
 /// alpha = sum_{i != j} f_i f_j gamma_ij / sum_{i != j} f_i f_j,   gamma_ij = A_ij (u_i . u_j)^8 + B_ij, with
 /// B the least angle and A what the most one adds, each the mean of the two strands', and u_i the direction of length 1
-/// (a strand without one crosses all others).   [Zanni et al. 2015, eq. 15 and 16; field-maths 7]
+/// (a strand without one crosses all others).   [Zanni et al. 2015, eq. 15 and 16]
 /// Where the denominator is 0 (one strand, or the others too far): the mean of `most`, weighted by f_i, without
 /// gradient; there C hardly depends on alpha. Nothing for no field at all.
 /// Up to 64 strands are taken pair by pair, more in a time linear in their number: (u . v)^8 is a product of symmetric

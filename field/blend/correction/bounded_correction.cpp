@@ -35,7 +35,7 @@ BoundedCorrection::BoundedCorrection(const Kernel& kernel, double alpha, bool ca
 
 double BoundedCorrection::projected(const Place& at) const { return projected(curve_.place(at.f), at.G); }
 
-// Above the curve, or exactly: the curve itself. Else the chord as a weighted mean (field-maths 4.1).
+// Above the curve, or exactly: the curve itself. Else the chord as a weighted mean.
 double BoundedCorrection::projected(const BoundedCurve::Place& place, double G) const {
   const double f = place.f;
   if (!is_on_chord(place, G))
@@ -68,7 +68,7 @@ ProjectedSlopes BoundedCorrection::projected_slopes(double f, double G) const {
   const auto [end, slope, weight, sum, value] = Chord(*this, place, G);
   const double slope_at_H = curve_.slope(end);
   if (!(sum > 0)) return {value, 0, 0, 0};
-  // field-maths 4.5; at the top both the chord and the curve are level, and what is left is their common limit
+  // As of Correction; at the top both the chord and the curve are level, and what is left is their common limit
   const double df = sin_ * (2 * weight + sin_ - curve_.slope(place) * cos_) / (sum * sum);
   const double steep = slope_at_H > 0 ? weight * (weight / slope_at_H) : 0;
   return {value, df, (steep + cos_ * sin_) / (sum * sum), slope * (f - end.f) / (sum * sum)};

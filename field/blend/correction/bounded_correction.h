@@ -27,7 +27,7 @@ namespace marrow {
 /// Cavity: two equal skeletons 2a apart have f = 2 k(r), G = 2 h |k'(r)| / r at height h over the middle, r^2 =
 /// a^2 + h^2. With B = a^2 + 1/s^2 (Cauchy) or B = R^2 - a^2 (compact) their curve M is steepest as -tan(alpha) where
 ///   cos(alpha) (B - n h^2) = sin(alpha) h (B +- h^2),        + Cauchy, - compact;
-/// for 1/s = 0 this is the cubic of the inverse kernel (field-maths 5). k is analytic in r^2, and all is used for
+/// for 1/s = 0 this is the cubic of the inverse kernel (as of Correction). k is analytic in r^2, and all is used for
 /// r^2 < 0 and a^2 < 0 too (f above twice the largest field of one skeleton), so that nothing switches there.
 class BoundedCorrection {
  public:

@@ -16,7 +16,7 @@ constexpr double vanishing_cosine = 1e-15;
 // Outside this range powers of distances leave the range of double; there C = f, far from every surface.
 constexpr double smallest_field = 1e-60, largest_field = 1e100;
 
-// The guard acts where sin a + s cos a falls below this share of s cos a.   [field-maths 4.4]
+// The guard acts where sin a + s cos a falls below this share of s cos a: never for alpha >= 0.
 constexpr double guard_share = 0.5;
 
 // From (f, G) horizontally to the reference curve.
@@ -26,7 +26,8 @@ struct Chord {
 };
 
 // With the ratio r = G / g(f): x_H = f r^(1/q), q = n/(n-1), and the slope (g(f) - G) / (f - x_H) is
-// g(f)/f (r - 1) / (r^(1/q) - 1), where both differences come from expm1.   [field-maths 4.1]
+// g(f)/f (r - 1) / (r^(1/q) - 1), where both differences come from expm1. Eq. 12 of Zanni et al. 2015 is then the mean
+// (f sin a + x_H s cos a) / (sin a + s cos a), which is not 0/0 on the curve, nor infinite at pi/2.
 Chord chord_to(const ReferenceCurve& curve, double f, double G) {
   const double root = curve.inverse_distance(f);
   const int n = curve.degree();
@@ -109,14 +110,14 @@ ProjectedSlopes Correction::projected_slopes(double f, double G) const {
   const double weight = slope * cos_, sum = weight + sin_, slope_at_H = curve_.slope(x_H);
   if (value == 0) return {0, 0, 0, 0};
   if (sum < guard_share * weight) return {value, -1, 2 / slope_at_H, 0};
-  // field-maths 4.5 with the terms collected, so that each is positive for alpha >= 0
+  // the derivatives of the mean with the terms collected, so that each is positive for alpha >= 0
   const double df = sin_ * (2 * weight + sin_ - curve_.slope(f) * cos_) / (sum * sum);
   const double dG = (weight * (weight / slope_at_H) + cos_ * sin_) / (sum * sum);
   return {value, df, dG, slope * (f - x_H) / (sum * sum)};
 }
 
 // The root of sin a (eta^3 + eta) + cos (n eta^2 - 1) = 0 with the least eta, in closed form by z = 1 / eta and
-// z = k/3 + y: y^3 - P y = Q.   [field-maths 5 step 2]
+// z = k/3 + y: y^3 - P y = Q.   [Zanni et al. 2015, sec. 4.2, with -tan(alpha) in step 2]
 Correction::CriticalPoint Correction::critical_point(double a) const {
   const int n = degree();
   const double tangent = sin_ / cos_, k = a * tangent;

@@ -12,11 +12,11 @@ namespace marrow {
 
 /// C(f, G) moves the point (f, G = |grad_S f|) along the direction -tan(alpha) onto the reference curve.
 /// Isotone in f, G (and in alpha where G < g(f)) for alpha >= 0.
-///   Projection::Paper  onto the chord of the curve: Zanni et al. 2015, eq. 12, in the stable form of field-maths 4.1;
-///   Projection::Exact  onto the curve itself (field-maths 4.3); below alpha = 0 it is not defined and Paper is used.
+///   Projection::Paper  onto the chord of the curve: Zanni et al. 2015, eq. 12, as a weighted mean (correction.cpp);
+///   Projection::Exact  onto the curve itself; below alpha = 0 it is not defined and Paper is used.
 ///   cavity             points behind the critical point D of the curve M_d of two equal skeletons take the value
-///                      of D (Zanni et al. 2015, sec. 4.2, with the sign of field-maths 5 step 2).
-///   alpha < 0          the far-field pole is guarded (field-maths 4.4).
+///                      of D (Zanni et al. 2015, sec. 4.2, with the slope -tan(alpha) in step 2).
+///   alpha < 0          far away, where eq. 12 has a pole, it is 2 x_H - f with g(x_H) = G, and 0 at least.
 /// C(0, G) = 0, C(inf, G) = inf; alpha = pi/2 gives exactly f.
 /// Under the Cauchy and the compact kernel: as of BoundedCorrection.
 class Correction {
@@ -32,7 +32,7 @@ class Correction {
   using Partials = CorrectionPartials;
   Partials partials(double f, double G) const;
 
-  /// The critical point D of the curve M_d of two equal skeletons 2 a apart, seen from a.   [field-maths 5]
+  /// The critical point D of the curve M_d of two equal skeletons 2 a apart, from a.   [Zanni et al. 2015, sec. 4.2]
   struct CriticalPoint {
     double eta;        ///< height / a
     double eta_slope;  ///< d eta / da

@@ -25,7 +25,7 @@ struct Direction {
 X power(const X& x, double exponent) { return pow(x, exponent); }
 
 // x_H = f e^L with L = ln(G / g) (n-1)/n, and the slope of the chord (n-1) f^(1/(n-1)) expm1(q L) / expm1(L),
-// q = n/(n-1).   [field-maths 4.1]
+// q = n/(n-1).   [chord_to() in correction.cpp]
 struct Chord {
   X x_H, slope;
 };
@@ -58,7 +58,7 @@ X projected(const CorrectionRule& rule, const X& f, const X& G_squared, const Di
 }
 
 // The largest root z = 1 / eta of z^3 - k z^2 - n z - k, k = a tan(alpha); for alpha < 0, where there may be none, the
-// steepest point instead, at the minimum of the cubic.   [field-maths 5 step 2]
+// steepest point instead, at the minimum of the cubic.   [Zanni et al. 2015, sec. 4.2]
 X inverse_height(int n, const X& k) {
   const auto cubic = [&](double z) { return ((z - k.value) * z - n) * z - k.value; };
   const X steepest = k * (1.0 / 3) + sqrt(square(k) * (1.0 / 9) + n / 3.0);
@@ -74,7 +74,7 @@ X inverse_height(int n, const X& k) {
   return implicit_root(z, slope_at(z), [&](const X& x) { return ((x - k) * x - double(n)) * x - k; });
 }
 
-// In the cavity branch C is that of the critical point of M_d.   [field-maths 5 steps 1 and 3]
+// In the cavity branch C is that of the critical point of M_d.   [Zanni et al. 2015, sec. 4.2]
 X behind_critical_point(const CorrectionRule& rule, const X& f, const X& G_squared, const Direction& to, double alpha) {
   const int n = rule.kernel.degree;
   const X r_squared = power(f * 0.5, -2.0 / (n - 1));

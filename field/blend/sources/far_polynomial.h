@@ -11,7 +11,7 @@
 
 namespace marrow {
 
-/// Sums over sources far away, in a ball around a place: f, and h with grad h = grad_S f.   [tracing 3.1, B5]
+/// Sums over sources far away, in a ball around a place: f, and h with grad h = grad_S f.   [taylor_remainder.h]
 class FarPolynomial {
  public:
   static constexpr int degree = 13;  ///< of both, so that grad_S f is exact to one less

@@ -18,7 +18,7 @@ struct Source {
   double weight = 0, radius = 0, lift_squared = 0;
 };
 
-/// Sums and what bounds their remainders.   [tracing 3.1, B3 and B4]
+/// Sums and what bounds their remainders.   [taylor_remainder.h]
 struct SourceSample {
   SkeletonSample sum;
   double second = 0;                                         ///< sum w D^-(m+2)

@@ -27,7 +27,7 @@ struct CubeView {
   KeptSurroundings sources;
 };
 
-/// Immutable; works with a coarse split, whose errors enter the bounds (tracing.md 3.1, 3.3).
+/// Immutable; works with a coarse split, whose errors enter the bounds.
 class Divider {
  public:
   Divider(const SourceTree&, const NearFar& coarse, const IsoCurve&, const BlockKernels&, int degree);

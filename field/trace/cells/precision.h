@@ -28,7 +28,7 @@ inline constexpr double coarse_tolerance = 2e-2;
 
 /// What one piece may contribute to a displacement of the surface by `tolerance` local radii.
 /// The error of the corrected field is at most error(f) + error(G) / n (dC/df <= 1, dC/dG g'(C) <= 1 with g'(1) = n,
-/// tracing.md 3.3), and the field falls by about n - 1 over one radius. A block has some 200 sources, most of whose
+/// see ../README.md), and the field falls by about n - 1 over one radius. A block has some 200 sources, most of whose
 /// error bounds are far below their budget.
 inline ErrorBudget budget_of(double tolerance, int degree) {
   const double share = tolerance * (degree - 1) / 400;

@@ -3,7 +3,7 @@
 // alpha = sum_{i != j} f_i f_j gamma_ij / sum_{i != j} f_i f_j [Zanni et al. 2015, eq. 15], gamma_ij by the directions
 // of two strands, each the mean of its segments' weighted by their fields. Strands that a quadratic over a cube tells
 // well enough are one quadratic together, of the tensor sum f u^8 and of three sums, through which they meet the others
-// in a time linear in their number (field-maths 7). Of each other strand the pieces that a quadratic would not tell
+// in a time linear in their number (strand_tensor.h). Of each other strand the pieces that a quadratic would not tell
 // count one by one, and what is left is a quadratic of f and of sum f_s u_s. Well enough is judged by what is left out
 // over the field of all strands but the strongest, as alpha is a mean over pairs. Quadratics are fitted at 15 places of
 // the cube. Where strands have angles of their own, gamma_ij is a mean of both, and what is folded is told a second

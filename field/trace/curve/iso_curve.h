@@ -1,6 +1,6 @@
 // Where the corrected field is 1, in the plane of f and |grad_S f|, for one angle or for a range of them.
 //
-// At a given f and |grad_S f| the operator is monotone in alpha (tracing.md 3.3): rising right of the reference curve,
+// At a given f and |grad_S f| the operator is monotone in alpha (../README.md): rising right of the reference curve,
 // falling left of it. So over a range of angles it is largest, and least, at the ends of the range.
 #pragma once
 

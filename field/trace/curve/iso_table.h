@@ -1,7 +1,7 @@
 // The curve on which the corrected field of one angle is 1, as a table: "outside?" without evaluating the operator.
 //
-// C is the operator of blend/correction/correction.h [Zanni et al. 2015; field-maths 4, 5]. In the plane of x = f and
-// y = |grad_S f| it is isotone in both for alpha >= 0 (tracing.md 3.3), so {C < 1} is a region below one curve. It is
+// C is the operator of blend/correction/correction.h [Zanni et al. 2015, sec. 4]. In the plane of x = f and
+// y = |grad_S f| it is isotone in both for alpha >= 0 (../README.md), so {C < 1} is a region below one curve. It is
 // stored in coordinates turned by theta = alpha, or a little more where alpha is near 0 or below it,
 //   u = y sin theta - x cos theta,   v = x sin theta + y cos theta,
 // because the operator projects along lines of constant v: C(x, y) < 1  <=>  v < V(u), with V nearly constant.

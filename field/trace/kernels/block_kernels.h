@@ -275,7 +275,7 @@ struct BlockKernels {
   void (*roots_between)(const CellRays* cells, int count, const PacketView&, bool any, PacketMemory&, CellRoots&);
   /// At the first `count` places, which share a level.
   void (*point_fields)(const FieldLevel&, int degree, const PlacesInLanes&, int count, PointField*);
-  /// Finds `growth`, `step` and its `margin` of the first `count` lanes (B3 and B4 of tracing.md).
+  /// Finds `growth`, `step` and its `margin` of the first `count` lanes (by taylor_remainder.h).
   void (*surface_starts)(const SurfaceRule&, int count, SurfaceLanes&);
   /// Finds `margin` of the first `count` lanes, which are places anywhere: positive where the field is below 1.
   void (*place_margins)(const SurfaceRule&, int count, SurfaceLanes&);

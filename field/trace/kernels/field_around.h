@@ -9,7 +9,7 @@ struct PointField {
   float si_gradient[3];            ///< G
   float hessian[6];                ///< of the potential: derivative of G; xx yy zz xy xz yz
   float nearest;                   ///< distance to the nearest source
-  float second, third;             ///< M2 and m M3 of tracing.md 3.1, for bounds of f and G nearby
+  float second, third;             ///< M2 and m M3 of taylor_remainder.h, for bounds of f and G nearby
   float share, share_gradient[3];  ///< of the range of angles, where each skeleton has one; else 0
   float share_bend;                ///< |share - its linear part| <= share_bend h^2 on short steps h
 };

@@ -1,5 +1,5 @@
 // Symmetric tensors of degree 8: sum f_i u_i^8 over strands, through which each meets all others in a time linear in
-// their number (field-maths 7). Components as in block_view.h.
+// their number, as (u . v)^8 = <u^8, v^8>. Components as in block_view.h.
 #pragma once
 
 namespace marrow {

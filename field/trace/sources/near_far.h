@@ -45,7 +45,7 @@ struct ErrorBudget {
   double field, gradient;
 };
 
-/// Splits at certified errors: the Taylor remainder B5 of tracing.md and the quadrature bound of GaussError, and for a
+/// Splits at certified errors: the remainders of taylor_remainder.h and the quadrature bound of GaussError, and for a
 /// group that stands for its pieces the second moments that its centre of mass neglects.
 class NearFar {
  public:

@@ -12,8 +12,8 @@ namespace marrow {
 struct BlendField;
 
 /// A straight stretch of one segment, or a point (from == to). Its field is 1/N int tau^(n-1) d^-n ds, or
-/// (tau/d)^(n-1) for a point: the inverse kernel of degree n, with tau linear along the stretch (field-maths
-/// 1, 3.1, 3.3).
+/// (tau/d)^(n-1) for a point: the inverse kernel of degree n, with tau linear along the stretch
+/// [SCALIS: Zanni et al. 2013].
 struct Piece {
   Vec3d from, to;
   double radius_from = 0, radius_to = 0;

@@ -29,7 +29,7 @@ const NodeTable& node_table();
 ///
 /// Derivation. The m-node rule on a length L has the error c_m L^(2m+1) |F^(2m)(xi)| / (2m)! with
 /// c_m = (m!)^4 / ((2m+1) ((2m)!)^2) [Abramowitz and Stegun 25.4.30]. The k-th derivative of d^-n along a line is, over
-/// k!, at most binom(n+k-1, k) d^-(n+k), because Gegenbauer polynomials are largest at 1 [tracing.md 3.1]; that of the
+/// k!, at most binom(n+k-1, k) d^-(n+k), because Gegenbauer polynomials are largest at 1; that of the
 /// vector (p-q) d^-(n+2) at most binom(n+k, k) d^-(n+1+k). Leibniz' rule with the linear radius gives at most the
 /// factor (1 + |slope| d / tau)^(exponent of tau). Close to a piece, from half its length on, that grows with m, though
 /// the rule converges: RuleErrors tell the error itself, and the smaller of the two counts.

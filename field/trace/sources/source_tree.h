@@ -1,4 +1,4 @@
-// Pieces in a hierarchy of groups, each with the moments that let it stand for its pieces from afar (tracing.md 3.2).
+// Pieces in a hierarchy of groups, each with the moments that let it stand for its pieces from afar.
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,7 @@ namespace marrow {
 
 /// A bulge is a function b of another body's field t, from b(c) = b'(c) = 0 to b(1) = 0, b'(1) = -1, where the contact
 /// goes on with 1 - t: so the surface stays smooth around the contact. Below c it is 0.
-/// [Angelidis, Jepp, Cani 2002, sec. 5; with the coefficients of field-maths 8.3, since the printed ones miss b'(1)]
+/// [Angelidis, Jepp, Cani 2002, sec. 5; with other coefficients, since the printed ones miss b'(1) = -1]
 namespace bulge {
 
 /// From b(m) = h, b'(m) = 0 to b(1) = 0, b'(1) = -1: the cubic of Hermite's conditions. h is its largest value while

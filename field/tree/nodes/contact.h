@@ -17,7 +17,7 @@ namespace marrow {
 /// inside one; around the contact each surface goes on smoothly, for b(1) = 0 and b'(1) = -1; nothing changes where the
 /// other fields are below the bulge's `from`; and no surface appears where no body is near, as a bulge is below 1.
 /// Where two others are equally near, the bulge of the third has a crease, as those two have against each other. [Cani
-/// 1993; Angelidis, Jepp, Cani 2002, sec. 5; field-maths 8.3]
+/// 1993; Angelidis, Jepp, Cani 2002, sec. 5]
 struct Contact {
   static constexpr NodeInfo info{"contact",
                                  "Bodies that press each other flat where they touch, with a bulge around (precise "

@@ -34,7 +34,7 @@ struct ConvolvedPiece {
 /// f = R(H)^2 (sin a2 - sin a1) / (2 h^2), with the foot H of p on the segment. The field of pieces of one radius put
 /// end to end is that of the whole, so that polylines have neither bulges nor creases. An infinite line has its surface
 /// at its radius, ends are thinner. With two radii this is not the integral of a radius that varies; the surface only
-/// tends to have the radius of the nearest place.   [Cani, Hornus 2001, sec. 4; field-maths 8.1]
+/// tends to have the radius of the nearest place.   [Cani, Hornus 2001, sec. 4]
 struct ConvolutionSegment {
   static constexpr NodeInfo info{"convolution_segment",
                                  "A segment with the 1/r^3 kernel, for `sum` and `restricted_blend`: pieces put end to "

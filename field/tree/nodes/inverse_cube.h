@@ -14,7 +14,7 @@ struct Partials {
 Partials partials(const Interval& h2, const Interval& t1, const Interval& t2);
 
 /// For h2 > 0, t1 <= t2. With d = sqrt(h2 + t^2) it is (t2/d2 - t1/d1) / h2; where the foot is outside, this is
-/// (t2^2 - t1^2) / (d1 d2 (|t2| d1 + |t1| d2)), which is not 0/0 on the line.   [field-maths 8.1]
+/// (t2^2 - t1^2) / (d1 d2 (|t2| d1 + |t1| d2)), which is not 0/0 on the line.
 template <Number X>
 X formula(const X& h2, const X& t1, const X& t2) {
   const X d1 = sqrt(h2 + square(t1)), d2 = sqrt(h2 + square(t2));

@@ -17,7 +17,7 @@ namespace marrow {
 /// largest field counts. Behind the first and the last plane a point keeps the place of the end.
 /// Smooth but where folds meet, as in a union, and where two places merge and vanish: there the field is torn. That is
 /// beyond the centre of a bend, as seen from the curve, so outside the surface while radii are smaller than bends.
-/// [Angelidis, Jepp, Cani 2002, sec. 4; field-maths 8.3]
+/// [Angelidis, Jepp, Cani 2002, sec. 4]
 struct LocalConvolution {
   static constexpr NodeInfo info{"local_convolution",
                                  "A polyline with the 1/r^3 kernel that blends with itself only along its own length: "

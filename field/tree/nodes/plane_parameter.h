@@ -48,7 +48,6 @@ struct PlaneChain {
 };
 
 /// Real roots u of a u^2 + b u + c, with the sign of the slope there: c/q and q/a for the q that does not cancel.
-/// [field-maths 8.3]
 template <Number X, class Visit>
 void roots_of_quadratic(double a, const X& b, const X& c, Visit visit) {
   const X discriminant = square(b) - X(4 * a) * c;

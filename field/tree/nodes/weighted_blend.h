@@ -24,7 +24,7 @@ X narrowed(const X& t, const X& width) {
 }
 
 /// d_ij: how much of its width a part keeps at the field f_j of another; 1 where that is 0, w from its surface inwards.
-/// [de Groot 2003, sec. 3.5, with the f_j of field-maths 8.2, as a square]
+/// [de Groot 2003, sec. 3.5, with f_j where he prints f_i, so that nothing jumps; as a square]
 template <Number X>
 X kept_width(const X& f_j, double w) {
   return X(w) + X(1 - w) * square(X(1.0) - clamp(f_j, 0, 1));

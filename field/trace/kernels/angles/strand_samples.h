@@ -1,7 +1,7 @@
 // One strand as a cube sees it, and its share of a tensor of many. Part of block_kernels_<set>.cpp.
 
 // What is left of the sums over nodes where pieces count as quadratics: binom(n + 2, 3) q^3 of each, q the radius of
-// the cube over its distance [tracing.md B5]; and where they count by two nodes: L^4 / 4320 times the fourth derivative
+// the cube over its distance [taylor_remainder.h]; where they count by two nodes L^4 / 4320 times the fourth derivative
 // along a piece of length L [Abramowitz and Stegun 25.4.30], of which d^-n gives n (n + 1) (n + 2) (n + 3) d^-4, and a
 // radius that changes some more.
 struct StrandErrors {

@@ -1,6 +1,6 @@
 // What turns the strands of a level, pair by pair or all others through a tensor. Part of block_kernels_<set>.cpp.
 
-// The symmetric tensor sum f u^8 over strands (field-maths 7), whose components are those of StrandLevel::far.
+// The symmetric tensor sum f u^8 over strands (strand_tensor.h), whose components are those of StrandLevel::far.
 struct Tensor16 {
   V16 of[tensor_components] = {};
 

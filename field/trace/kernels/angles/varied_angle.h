@@ -51,7 +51,7 @@ struct VariedAngle {
     return last;
   }
 
-  // A / f of angle_field.h. With s the share here, D = A - s f is 0 here: bounds of D (B3 of tracing.md, for A and f)
+  // A / f of angle_field.h. With s the share here, D = A - s f is 0 here: bounds of D (taylor_remainder.h, of A and f)
   // over f bound how far A / f moves.
   SummedShare mean_share(const Sample& p, const OnRay<float> (&at)[3]) const {
     AngleSums a{};

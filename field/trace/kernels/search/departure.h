@@ -34,7 +34,7 @@ inline AroundOf<float> around_in(const BlockView& block, const FieldAround* arou
   return a;
 }
 
-// How far rays that begin at t0 beside a hit are proved to be outside by B3 and B4 of tracing.md about the hit. The ray
+// How far rays that begin at t0 beside a hit are proved to be outside by taylor_remainder.h about the hit. The ray
 // is s from it at t0, and at t0 + h no more than s + h: with h >= 16 s remainders in (s + h)^2 are at most (17/16)^2 of
 // those in h^2, and s + h is at most 17/16 h. Where patches give the angle they do so on the ray itself. Returns the
 // rays of which that much is proved; `front` is how far.

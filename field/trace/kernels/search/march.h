@@ -64,7 +64,7 @@ struct Marcher : Sampler<Rule, F> {
     return root_of(length2);
   }
 
-  // What B3 and B4 of tracing.md add to f and |G| at t + h at most, |h| = q distances.
+  // What the remainders of taylor_remainder.h add to f and |G| at t + h at most, |h| = q distances.
   struct Bend {
     F field, gradient;
   };
@@ -76,7 +76,7 @@ struct Marcher : Sampler<Rule, F> {
             (sums.third * series.gradient + level.far_g_bend()) * hh};
   }
 
-  // Whether the field is below 1 on all of [t, t + h] (h of either sign): B3 and B4 of tracing.md. Both bounds are
+  // Whether the field is below 1 on all of [t, t + h] (h of either sign). Both bounds, with their remainders, are
   // convex in h, so the ends suffice.
   Mask outside_until(const Sample& p, F h, Mask asked) const {
     const F q = abs_of(h) / p.distance;

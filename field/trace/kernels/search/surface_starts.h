@@ -13,7 +13,7 @@ inline PacketMask first_of(int count, PacketFloat) {
 }
 
 // How far to go along the normal until the field is certainly below 1: f and |G| there are bounded by their Taylor
-// polynomials and the remainders B3 and B4 of tracing.md, with series sums up to twice their values at 0 (a step of at
+// polynomials and the remainders of taylor_remainder.h, with series sums up to twice their values at 0 (a step of at
 // most a tenth of the distance). Twice the errors of the block, since a ray may start in its neighbour.
 template <bool Varied, class F>
 class SurfaceStart {

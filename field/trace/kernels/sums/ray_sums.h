@@ -1,6 +1,6 @@
 // Sums over sources for a place on a ray. Part of block_kernels_<set>.cpp.
 
-// At p, with derivatives along the unit vector e (tracing.md 3.1).
+// At p, with derivatives along the unit vector e (M2, M3: taylor_remainder.h).
 template <class F>
 struct RaySums {
   F f, df;        // sum w d^-m and its derivative

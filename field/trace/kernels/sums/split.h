@@ -1,6 +1,6 @@
 // Which of some pieces are far from a ball, and the moments of those that are. Part of block_kernels_<set>.cpp.
 
-// The tail sum_{k>P} binom(e+k-1, k) q^k of the series of (1-q)^-e (tracing.md B5): its terms fall at least by the
+// The tail sum_{k>P} binom(e+k-1, k) q^k of the series of (1-q)^-e (taylor_remainder.h): its terms fall at least by the
 // first ratio, so a geometric series bounds it. `first` is binom(e+P, P+1). Negative: no bound.
 template <int FarDegree>
 inline V16 series_tail(V16 q, int exponent, float first) {
