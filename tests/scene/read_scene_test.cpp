@@ -283,6 +283,15 @@ objects:
   EXPECT_FALSE(std::get<AlphaLocalContact>(blend(4).alpha).density);
 }
 
+TEST_F(ReadScene, AnArcOfAWholeTurnMayBeginAnywhere) {
+  const auto arc = [&](const std::string& angles) {
+    return read("marrow: 1\nobjects: [{field: {blend: {of: [{arc: {angles: " + angles + "}}]}}}]\n");
+  };
+  EXPECT_TRUE(arc("[152.2, 512.2]"));
+  EXPECT_TRUE(arc("[271.29363606773626, 631.29363606773632]"));
+  EXPECT_FALSE(arc("[152.2, 512.2000001]"));
+}
+
 TEST_F(ReadScene, KnowsEverySkeletonAndKernel) {
   const auto scene = read(R"(marrow: 1
 objects:
