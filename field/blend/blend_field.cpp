@@ -119,13 +119,12 @@ std::string untraceable_angles(const BlendField& blend) {
   if (single_angle(blend)) return {};
   if (!blend.direction_bounds.empty()) return untraceable_directions(blend);
   if (!blend.alpha_per_skeleton) return unknown("an `alpha` that varies other than by skeleton or direction");
-  bool negative = false, linear = false;
+  bool negative = false;
   blend.for_each_list([&](const auto& list) {
-    for (const double alpha : list.alphas) negative = negative || alpha < 0;
-    for (std::size_t i = 0; i < list.alphas.size(); ++i) linear = linear || list.angle_varies(i);
+    for (const auto* alphas : {&list.alphas, &list.alphas_to})
+      for (const double alpha : *alphas) negative = negative || alpha < 0;
   });
-  if (negative) return unknown("an `alpha` below 0 among several");
-  return linear ? unknown("an `alpha` that varies along a skeleton") : std::string{};
+  return negative ? unknown("an `alpha` below 0 among several") : std::string{};
 }
 
 // How many radii long a segment is, by the radius at each place.

@@ -167,13 +167,13 @@ Draft draft_of(std::size_t kind, Random& random) {
   return kind < draws.size() ? draws[kind](random) : Draft{odd_blend(kind - draws.size(), random)};
 }
 
-// Every other scene of strands, from numbers of its own: what all scenes are does not depend on it.
-bool has_own_bounds(std::uint64_t number) {
-  return kind_of(number) == single_angle_kinds + 1 && number / varied_kinds % 2 == 1;
-}
-BlendField with_own_bounds(BlendField blend, std::uint64_t number) {
+// Of every other scene of varying angles these are linear along skeletons, or strands have bounds of their own: from
+// numbers of its own, so that what all scenes are does not depend on it.
+BlendField with_other_angles(BlendField blend, std::uint64_t number) {
+  if (number < first_varied_scene || number >= first_odd_scene || number / varied_kinds % 2 == 0) return blend;
   Random random(~number, Random::Silent{});
-  return test::with_own_bounds(std::move(blend), random);
+  return blend.alpha_per_skeleton ? with_linear_angles(std::move(blend), random)
+                                  : with_own_bounds(std::move(blend), random);
 }
 
 }  // namespace
@@ -183,7 +183,7 @@ StressScene::StressScene(std::uint64_t number) {
   Random random(number, Random::Silent{});
   kind_ = kind_of(number);
   Draft draft = draft_of(kind_, random);
-  if (has_own_bounds(number)) draft.blend = with_own_bounds(std::move(draft.blend), number);
+  draft.blend = with_other_angles(std::move(draft.blend), number);
   const double factor = random.between(0, 1) < 0.5 ? 1 : pow(10, random.between(-4, 4));
   const double away = draft.away > 0 ? draft.away : random.between(0, 1) < 0.8 ? 0 : 30;
   const Vec3d move = random.vector(away * factor);

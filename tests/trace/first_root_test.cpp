@@ -280,6 +280,22 @@ TEST(FirstRoot, AgreesWithTheOracleWhereEachSkeletonHasItsAngle) {
   EXPECT_GT(all.hits, 100);
 }
 
+TEST(FirstRoot, AgreesWithTheOracleWhereAnglesAreLinearAlongSkeletons) {
+  Random random(102);
+  Tally all;
+  for (const int n : {3, 4, 5})
+    for (const Projection projection : {Projection::Paper, Projection::Exact})
+      for (const int count : {2, 9}) {
+        const Setting s{n, 0, true, projection};
+        Judge judge(with_linear_angles(random_angled_scene(random, s, count), random));
+        for (int i = 0; i < 30; ++i) judge.check(any_ray(random, judge.field()));
+        expect_clean(judge, s);
+        all.add(judge.tally);
+      }
+  all.print("angles along skeletons");
+  EXPECT_GT(all.hits, 100);
+}
+
 TEST(FirstRoot, AgreesWithTheOracleWhereDirectionsGiveTheAngle) {
   Random random(76);
   Tally all;

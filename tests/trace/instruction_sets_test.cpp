@@ -44,7 +44,7 @@ TEST(InstructionSets, UnknownOnesAreRefused) {
 
 // Stand for one of its own for each skeleton, and for one by directions, whose bounds are those of all strands or of
 // each.
-constexpr double angle_each = 0.125, by_direction = 0.25, by_own_direction = 0.375;
+constexpr double angle_each = 0.125, by_direction = 0.25, by_own_direction = 0.375, angle_along = 0.5;
 
 TEST(InstructionSets, GiveTheSameBits) {
   ASSERT_GE(sets_here().size(), 2U) << "nothing to compare on this machine";
@@ -56,6 +56,7 @@ TEST(InstructionSets, GiveTheSameBits) {
                               {5, 0},
                               {7, 1.2},
                               {4, angle_each},
+                              {5, angle_along},
                               {4, by_direction},
                               {4, 0.8},
                               {4, by_own_direction},
@@ -63,6 +64,7 @@ TEST(InstructionSets, GiveTheSameBits) {
   int far_degree = high_far_degree;  // in turns
   for (const Setting& s : settings) {
     const BlendField blend = s.alpha == angle_each     ? random_angled_scene(random, s, 4)
+                             : s.alpha == angle_along  ? with_linear_angles(random_angled_scene(random, s, 4), random)
                              : s.alpha == by_direction ? random_stranded_scene(random, s, 5)
                              : s.alpha == by_own_direction
                                  ? with_own_bounds(random_stranded_scene(random, s, 5), random)

@@ -227,8 +227,9 @@ TEST(PacketsOfVariedAngles, FindWhatSingleRaysFind) {
   Compared count;
   Starts starts;
   for (const BlendField& blend :
-       {random_angled_scene(random, {4, 0}, 5), random_stranded_scene(random, {4, 0}, 5),
-        random_stranded_scene(random, {5, 0}, 5), with_own_bounds(random_stranded_scene(random, {4, 0}, 5), random)})
+       {random_angled_scene(random, {4, 0}, 5), with_linear_angles(random_angled_scene(random, {4, 0}, 5), random),
+        random_stranded_scene(random, {4, 0}, 5), random_stranded_scene(random, {5, 0}, 5),
+        with_own_bounds(random_stranded_scene(random, {4, 0}, 5), random)})
     for (const std::string& set : sets_here()) {
       auto made = BlendTracer::make(blend, {.instruction_set = set});
       ASSERT_TRUE(made);

@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "field/skeleton/shares.h"
 #include "field/skeleton/skeletons.h"
+#include "field/trace/shares/angle_field.h"
 #include "tests/trace/random_scene.h"
 
 namespace marrow::test {
@@ -52,6 +54,43 @@ TEST(Pieces, PartsAddUpToTheirPiece) {
     EXPECT_LT(relative(field_of(left, p, n).value + field_of(right, p, n).value, field_of(piece, p, n).value), 1e-11);
     EXPECT_GE(left.mass * (1 + 1e-12), left.length * integer_power(left.radius, n - 1) / curve_normalisation(n));
     EXPECT_EQ(left.inside_distance, piece.inside_distance);
+  }
+}
+
+double angle_field_of(const Piece& piece, const Vec3d& p, int degree) {
+  const double f = field_of(piece, p, degree).value;
+  if (piece.is_point()) return piece.factor * f;
+  const double rise = segment_share(skeleton_of(piece), p, {.degree = degree}).value;
+  return piece.factor * (piece.weight_at(0) * f + piece.lean * rise);
+}
+
+// Whole or in parts: the share of the range of angles times the field.
+TEST(Pieces, OfAnglesAddUpToThem) {
+  Random random(25);
+  for (int n = 3; n <= 7; ++n) {
+    const BlendField blend = with_linear_angles(random_angled_scene(random, {.degree = n}, 9), random);
+    const PieceCutter cutter(n, critical_field);
+    const AngleRange range = angle_range(blend).value();
+    const auto pieces = angle_pieces(blend, range, cutter.cut(blend));
+    EXPECT_TRUE(std::ranges::any_of(pieces, [](const Piece& p) { return p.lean != 0; }));
+    for (int i = 0; i < 300; ++i) {
+      const Vec3d p = random.vector(3);
+      double sum = 0, of_parts = 0, at_most = 0;
+      for (const Piece& piece : pieces) {
+        sum += angle_field_of(piece, p, n);
+        at_most += piece.mass / integer_power(distance(piece, p), piece.is_point() ? n - 1 : n);
+        const double cut = random.between(0.01, 0.99);
+        if (piece.is_point()) of_parts += angle_field_of(piece, p, n);
+        else
+          for (const Piece& part : {cutter.part(piece, 0, cut), cutter.part(piece, cut, 1)})
+            of_parts += angle_field_of(part, p, n);
+      }
+      const BlendSample exact = evaluate(blend, p);
+      const double share = (exact.alpha - range.least) / (range.most - range.least);
+      EXPECT_NEAR(sum, share * exact.sum, 1e-11 * exact.sum) << "n=" << n;
+      EXPECT_NEAR(of_parts, sum, 1e-11 * exact.sum) << "n=" << n;
+      EXPECT_LE(sum, at_most * (1 + 1e-11)) << "n=" << n;
+    }
   }
 }
 

@@ -81,6 +81,14 @@ inline BlendField random_angled_scene(Random& random, const Setting& setting, in
   return blend;
 }
 
+/// Makes the angles of segments linear along them; a point keeps its one.
+inline BlendField with_linear_angles(BlendField blend, Random& random) {
+  blend.points.alphas_to = blend.points.alphas;
+  for (const double alpha : blend.segments.alphas)
+    blend.segments.alphas_to.push_back(random.between(0, 1) < 0.2 ? alpha : random.between(0, 1.5));
+  return blend;
+}
+
 /// `count` strands, and a third as many points, whose directions give the angle: up to four segments that turn by
 /// half a radian, of radii from 0.1 to 0.3.
 inline BlendField random_stranded_scene(Random& random, const Setting& setting, int count) {

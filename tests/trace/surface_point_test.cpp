@@ -82,6 +82,8 @@ TEST(SurfacePoint, NormalIsThatOfTheExactFieldWhereTheAngleVaries) {
   int hits = 0;
   for (const int n : {3, 4, 5}) {
     expect_normals_of_varied_angles(random, random_angled_scene(random, {n, 0, true}, 7), hits);
+    const BlendField linear = with_linear_angles(random_angled_scene(random, {n, 0, true}, 7), random);
+    expect_normals_of_varied_angles(random, linear, hits);
     expect_normals_of_varied_angles(random, random_stranded_scene(random, {n, 1, true}, 9), hits);
     const BlendField own = with_own_bounds(random_stranded_scene(random, {n, 1, true}, 9), random);
     expect_normals_of_varied_angles(random, own, hits);

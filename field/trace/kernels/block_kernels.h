@@ -161,10 +161,11 @@ inline constexpr int floats_per_strand = 19 * lanes;  ///< of the memory that it
 inline constexpr int most_far_moments = 224;  ///< monomials to degree 9 (far_field.h), in eights
 inline constexpr int most_far_nodes = 5;
 
-inline constexpr int floats_per_piece_group = 13 * lanes;
+inline constexpr int floats_per_piece_group = 14 * lanes;
 ///< from xyz, along xyz, 1 / length^2 (0 for a point), share = mass / tau^m, radius at the end less that at `from`,
-///< tau (the larger), length, reach, least radius of a group's pieces. Sources are within `reach` of the segment,
-///< within `length` of its nearest point. Unused lanes have share 0.
+///< tau (the larger), length, reach, least radius of a group's pieces, Piece::lean (for far_split() alone; all others
+///< want pieces that do not lean). Sources are within `reach` of the segment, within `length` of its nearest point.
+///< Unused lanes have share 0.
 
 /// Bounds over the ball around one octant of a cube, in the cube's coordinates.
 struct OctantBounds {
@@ -195,6 +196,7 @@ struct FarQuery {
   float radius, half;  ///< of the ball and of the cube, in the coordinates of the pieces
   int exponent;
   bool points;
+  bool some_lean;                       ///< else Piece::lean is 0 for all
   float field_budget, gradient_budget;  ///< the errors that one piece may cause
   int far_degree;                       ///< P of far_field.h
   int most_nodes;                       ///< of a far piece

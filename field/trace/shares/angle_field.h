@@ -1,8 +1,10 @@
-// The projection angle of blends whose skeletons have one each, as a second field of the kind that is traced.
+// The projection angle of blends whose skeletons have one each, or one that is linear along them, as a second field of
+// the kind that is traced.
 //
 // alpha(p) = sum f_i alpha_i / sum f_i [Zanni et al. 2015, eq. 14]. With the share a_i = (alpha_i - least) / (most -
 // least) in [0, 1] of the range of all angles, the share at p is A / f with A = sum a_i f_i: the field of the same
-// skeletons whose sources count a_i times. All that is known of sums is known of A.
+// skeletons whose sources count a_i times, a_i being linear along the skeleton. All that is known of sums is known of
+// A.
 #pragma once
 
 #include <optional>

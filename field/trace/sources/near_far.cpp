@@ -51,8 +51,9 @@ NearFar::Remainders NearFar::remainders(bool point, double q) const {
 NearFar::Rule NearFar::rule_for(const Piece& piece, double distance, double share) const {
   if (piece.is_point()) return {.nodes = 1, .error = {}};
   const double slope = std::fabs(piece.radius_to - piece.radius_from) / piece.length;
-  return quadrature_.smallest_rule(piece.mass, piece.radius, slope, piece.length, distance,
-                                   {share * budget_.field, share * budget_.gradient});
+  return quadrature_.smallest_rule(
+      {.mass = piece.mass, .largest_radius = piece.radius, .slope = slope, .length = piece.length, .lean = piece.lean},
+      distance, {share * budget_.field, share * budget_.gradient});
 }
 
 void add_nodes(const Piece& piece, int count, const Vec3d& center, double half, int degree, SourceGroups& out) {
@@ -67,7 +68,8 @@ void add_nodes(const Piece& piece, int count, const Vec3d& center, double half, 
   for (std::size_t k = 0; k < rule.positions.size(); ++k) {
     const double s = rule.positions[k];
     const double radius = (piece.radius_from + (piece.radius_to - piece.radius_from) * s) * scale;
-    out.add((lerp(piece.from, piece.to, s) - center) * scale, rule.weights[k] * unit / radius, radius);
+    out.add((lerp(piece.from, piece.to, s) - center) * scale, rule.weights[k] * unit / radius * piece.weight_at(s),
+            radius);
   }
 }
 
@@ -147,7 +149,7 @@ bool NearFar::add_if_far(const SourceNode& group, FarGroups& groups) const {
   return true;
 }
 
-FarQuery NearFar::query(bool points, Slight slight) const {
+FarQuery NearFar::query(bool points, Slight slight, bool some_lean) const {
   const int m = degree_ - (points ? 1 : 0);
   // binom(m + P, P + 1), exact in double
   const auto first_neglected = [this](int exponent) {
@@ -160,6 +162,7 @@ FarQuery NearFar::query(bool points, Slight slight) const {
              .half = 1,
              .exponent = m,
              .points = points,
+             .some_lean = some_lean,
              .field_budget = static_cast<float>(budget_.field),
              .gradient_budget = static_cast<float>(budget_.gradient),
              .far_degree = far_degree_,
@@ -192,7 +195,8 @@ std::vector<PieceIndex> NearFar::split(std::span<const Piece> pieces, std::span<
     if (groups.count() == 0) continue;
     std::vector<unsigned short> near_lanes(static_cast<std::size_t>(groups.count()));
     FarSums sums;
-    kernels_.far_split(groups.data(), groups.count(), query(points, slight), near_lanes.data(), sums);
+    kernels_.far_split(groups.data(), groups.count(), query(points, slight, groups.some_lean()), near_lanes.data(),
+                       sums);
     add_sums(sums, points, far);
     std::size_t lane = 0;
     for (const PieceIndex i : candidates) {

@@ -85,7 +85,7 @@ class NearFar {
   bool counts_as_slight(const SourceNode&, double distance, double cube_radius, FarField& far) const;
   bool add_if_far(const SourceNode&, FarGroups&) const;
   void fold(const FarGroups&) const;
-  FarQuery query(bool points, Slight) const;
+  FarQuery query(bool points, Slight, bool some_lean) const;
   void add_sums(const FarSums&, bool points, FarField&) const;
   double sum_rounding() const;
 

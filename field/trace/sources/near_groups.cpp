@@ -60,6 +60,8 @@ void NearGroups::add(const Piece& p) {
   g.tau[lane] = static_cast<float>(p.radius * scale_);
   g.length[lane] = static_cast<float>(p.length * scale_);
   g.thinnest[lane] = g.tau[lane];
+  g.lean[lane] = static_cast<float>(p.lean);
+  some_lean_ = some_lean_ || p.lean != 0;
 }
 
 void NearGroups::add(const SourceNode& n) {

@@ -21,11 +21,12 @@ class NearGroups {
   int count() const { return static_cast<int>(groups_.size()); }
   int curve_groups() const { return curve_groups_; }
   int point_groups() const { return static_cast<int>(groups_.size()) - curve_groups_; }
+  bool some_lean() const { return some_lean_; }  ///< of their pieces
 
  private:
   struct alignas(64) Group {
     float from[3][lanes], along[3][lanes], inverse_length2[lanes], share[lanes], taper[lanes], tau[lanes],
-        length[lanes], reach[lanes], thinnest[lanes];
+        length[lanes], reach[lanes], thinnest[lanes], lean[lanes];
   };
   static_assert(sizeof(Group) == floats_per_piece_group * sizeof(float));
 
@@ -39,6 +40,7 @@ class NearGroups {
 
   Vec3d center_;
   double scale_;
+  bool some_lean_ = false;
   int curve_groups_ = 0, used_ = 0;  // lanes used of the last group
   std::vector<Group> groups_;
 };

@@ -60,7 +60,7 @@ Piece PieceCutter::part(const Piece& piece, double begin, double end) const {
   const double slope = piece.radius_to - piece.radius_from;
   Piece p = segment_piece(lerp(piece.from, piece.to, begin), lerp(piece.from, piece.to, end),
                           piece.radius_from + slope * begin, piece.radius_from + slope * end)
-                .scaled(piece.factor);
+                .scaled(piece.factor * piece.weight_at(begin), piece.factor * piece.weight_at(end));
   p.inside_distance = piece.inside_distance;
   p.primitive = piece.primitive;
   return p;

@@ -1,6 +1,7 @@
 // Skeletons cut into pieces that are short against their radius: what cells list.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -20,18 +21,23 @@ struct Piece {
   double length = 0;            ///< 0 for a point
   double mass = 0;              ///< f <= mass d^-exponent at distance d: L tau_max^(n-1) / N, or tau^(n-1) for a point
   double share = 0;             ///< mass / radius^exponent, the exponent being n - 1 for a point: L / (N radius), or 1
-  double factor = 1;            ///< its sources count this times; in mass and share already
+  double factor = 1;            ///< its sources count this times at most; in mass and share already
+  double lean = 0;              ///< of the factor, from -1 to 1: they count weight_at() times as much
   double radius = 0;            ///< the larger of the two
   double inside_distance = 0;   ///< every p nearer than this to the piece is inside, by its own field alone
   std::uint32_t primitive = 0;  ///< index into the blend's segments, or its points
 
   bool is_point() const { return length == 0; }
-  /// With sources that count `by` times.
-  Piece scaled(double by) const {
+  /// At a share of the way from `from` to `to`: linear, and 1 at one end or at both.
+  double weight_at(double s) const { return lean > 0 ? 1 - lean + lean * s : 1 + lean * s; }
+  /// With sources that count so many times at both ends, linear between; not both 0. Of a piece that does not lean.
+  Piece scaled(double at_from, double at_to) const {
     Piece p = *this;
-    p.factor *= by;
-    p.mass *= by;
-    p.share *= by;
+    const double most = std::max(at_from, at_to);
+    p.factor *= most;
+    p.mass *= most;
+    p.share *= most;
+    p.lean = (at_to - at_from) / most;
     return p;
   }
   Vec3d middle() const { return (from + to) * 0.5; }

@@ -1,6 +1,7 @@
 #include "field/trace/sources/quadrature.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "field/math/elementary.h"
@@ -64,17 +65,19 @@ Bound least(const Bound& a, const Bound& b) { return {std::min(a.field, b.field)
 // What holds of one piece at one distance, for rules of 1, 2, 3, ... nodes in turn.
 class GaussError::Rules {
  public:
-  Rules(const GaussError& of, double mass, double largest_radius, double slope, double length, double distance)
-      : of_(of) {
-    const double ratio = length / distance, taper = 1 + slope * distance / largest_radius;
+  Rules(const GaussError& of, const Stretch& s, double distance) : of_(of) {
+    const double ratio = s.length / distance, taper = 1 + s.slope * distance / s.largest_radius;
     shrink_ = ratio * ratio;
-    series_.field = mass * integer_power(taper, of.degree_ - 1) / integer_power(distance, of.degree_);
-    series_.gradient = series_.field * taper * largest_radius / distance;
-    const double half = 0.5 * length, halves = distance / half;
+    series_.field = s.mass * integer_power(taper, of.degree_ - 1) / integer_power(distance, of.degree_);
+    series_.field *= 1 + std::fabs(s.lean) * distance / s.length;
+    series_.gradient = series_.field * taper * s.largest_radius / distance;
+    const double half = 0.5 * s.length, halves = distance / half;
     if (halves < RuleErrors::least_distance || halves >= RuleErrors::end_of_distances) return;
-    row_ = &of.close_->row(halves, slope != 0);
-    unit_.field = mass / integer_power(half, of.degree_);
-    unit_.gradient = unit_.field * largest_radius / half;
+    row_ = &of.close_->row(halves, s.lean != 0    ? RuleErrors::Weight::Leaning
+                                   : s.slope != 0 ? RuleErrors::Weight::Tapered
+                                                  : RuleErrors::Weight::Constant);
+    unit_.field = s.mass / integer_power(half, of.degree_);
+    unit_.gradient = unit_.field * s.largest_radius / half;
   }
 
   /// To be asked for 1, 2, 3, ... nodes.
@@ -96,17 +99,15 @@ class GaussError::Rules {
   const RuleErrors::Row* row_ = nullptr;
 };
 
-GaussError::Bound GaussError::bound(int nodes, double mass, double largest_radius, double slope, double length,
-                                    double distance) const {
-  Rules rules(*this, mass, largest_radius, slope, length, distance);
+GaussError::Bound GaussError::bound(int nodes, const Stretch& stretch, double distance) const {
+  Rules rules(*this, stretch, distance);
   Bound b{};
   for (int m = 1; m <= nodes; ++m) b = rules.next();
   return b;
 }
 
-GaussError::Rule GaussError::smallest_rule(double mass, double largest_radius, double slope, double length,
-                                           double distance, Bound allowed) const {
-  Rules rules(*this, mass, largest_radius, slope, length, distance);
+GaussError::Rule GaussError::smallest_rule(const Stretch& stretch, double distance, Bound allowed) const {
+  Rules rules(*this, stretch, distance);
   for (int m = 1;; ++m) {
     const Bound b = rules.next();
     const bool within = b.field <= allowed.field && b.gradient <= allowed.gradient;

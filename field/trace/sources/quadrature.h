@@ -31,8 +31,9 @@ const NodeTable& node_table();
 /// c_m = (m!)^4 / ((2m+1) ((2m)!)^2) [Abramowitz and Stegun 25.4.30]. The k-th derivative of d^-n along a line is, over
 /// k!, at most binom(n+k-1, k) d^-(n+k), because Gegenbauer polynomials are largest at 1; that of the
 /// vector (p-q) d^-(n+2) at most binom(n+k, k) d^-(n+1+k). Leibniz' rule with the linear radius gives at most the
-/// factor (1 + |slope| d / tau)^(exponent of tau). Close to a piece, from half its length on, that grows with m, though
-/// the rule converges: RuleErrors tell the error itself, and the smaller of the two counts.
+/// factor (1 + |slope| d / tau)^(exponent of tau), and with a linear weight beside it (1 + |lean| d / L) more. Close to
+/// a piece, from half its length on, that grows with m, though the rule converges: RuleErrors tell the error itself,
+/// and the smaller of the two counts.
 class GaussError {
  public:
   explicit GaussError(int degree);
@@ -40,8 +41,15 @@ class GaussError {
     double field;     ///< of f
     double gradient;  ///< of |grad_S f|
   };
-  /// `mass` = L tau_max^(n-1) / N, `largest_radius` = tau_max, `slope` = |d tau / ds|.
-  Bound bound(int nodes, double mass, double largest_radius, double slope, double length, double distance) const;
+  /// What of a piece the error goes by.
+  struct Stretch {
+    double mass;            ///< L tau_max^(n-1) / N, times the largest weight
+    double largest_radius;  ///< tau_max
+    double slope;           ///< |d tau / ds|
+    double length;          ///< L
+    double lean = 0;        ///< of a linear weight, the difference of both ends over the larger one
+  };
+  Bound bound(int nodes, const Stretch&, double distance) const;
   /// What bound() multiplies with powers of lengths.
   Bound constants(int nodes) const {
     return {field_[static_cast<std::size_t>(nodes)], gradient_[static_cast<std::size_t>(nodes)]};
@@ -52,8 +60,7 @@ class GaussError {
     bool within = true;  ///< false: even this, the largest rule, is not good enough
   };
   /// The smallest rule whose error is within `allowed`, else the largest.
-  Rule smallest_rule(double mass, double largest_radius, double slope, double length, double distance,
-                     Bound allowed) const;
+  Rule smallest_rule(const Stretch&, double distance, Bound allowed) const;
 
  private:
   class Rules;

@@ -80,9 +80,9 @@ SumsOfPowers by_panels(const Border& border, int degree, double distance, std::s
   return sums;
 }
 
+// Of powers beyond the first the last is the vector's alone.
 RuleErrors::Error largest(const Border& border, int degree, double distance, const SumsOfPowers& exact,
                           const SumsOfPowers& rule) {
-  const auto n = static_cast<std::size_t>(degree);
   RuleErrors::Error e;
   for (std::size_t j = 0; j < exact.size(); ++j) {
     double field = 0, gradient2 = 0;
@@ -91,7 +91,7 @@ RuleErrors::Error largest(const Border& border, int degree, double distance, con
       const double along = exact[j].along[i] - rule[j].along[i], across = exact[j].across[i] - rule[j].across[i];
       gradient2 = std::max(gradient2, along * along + across * across * border.across2[i]);
     }
-    if (j < n) e.field = std::max(e.field, field);
+    if (j == 0 || j + 1 < exact.size()) e.field = std::max(e.field, field);
     e.gradient = std::max(e.gradient, std::sqrt(gradient2));
   }
   constexpr double between_places = 1.1, rounding = 1e-13;
@@ -100,10 +100,16 @@ RuleErrors::Error largest(const Border& border, int degree, double distance, con
           .gradient = between_places * e.gradient + rounding * degree * field / distance};
 }
 
+std::size_t powers_of(RuleErrors::Weight weight, int degree) {
+  const auto n = static_cast<std::size_t>(degree);
+  return weight == RuleErrors::Weight::Constant ? 1 : weight == RuleErrors::Weight::Tapered ? n + 1 : n + 2;
+}
+
 // With w = ((1 + k s) / (1 + |k|))^(n-1) the weights binom(n-1, j) k^j / (1 + |k|)^(n-1) of the powers s^j have
-// absolute values that add up to 1, so that the largest error of a power bounds them all.
-RuleErrors::Row make_row(int degree, double distance, bool tapered) {
-  const std::size_t powers = tapered ? static_cast<std::size_t>(degree) + 1 : 1;
+// absolute values that add up to 1, so that the largest error of a power bounds them all; so they have with one more
+// such factor.
+RuleErrors::Row make_row(int degree, double distance, RuleErrors::Weight weight) {
+  const std::size_t powers = powers_of(weight, degree);
   const Border border(distance);
   const SumsOfPowers exact = by_panels(border, degree, distance, powers);
   RuleErrors::Row row{};
@@ -121,15 +127,15 @@ const RuleErrors& RuleErrors::of(int degree) {
       [degree] { return std::unique_ptr<const RuleErrors>(new RuleErrors(degree)); });
 }
 
-const RuleErrors::Row& RuleErrors::row(double distance, bool tapered) const {
+const RuleErrors::Row& RuleErrors::row(double distance, Weight weight) const {
   // distance = 2^exponent fraction, 1/2 <= fraction < 1: `steps` equal steps of the fraction.
   int exponent;
   const double fraction = std::frexp(distance, &exponent);
   const int step = static_cast<int>((fraction - 0.5) * 2 * steps);
   const double lower = std::ldexp(0.5 + 0.5 * step / steps, exponent);
   const int octave = exponent - least_exponent;
-  return (tapered ? tapered_ : constant_)[static_cast<std::size_t>(octave * steps + step)].get(
-      [&] { return std::make_unique<const Row>(make_row(degree_, lower, tapered)); });
+  return rows_[static_cast<std::size_t>(weight)][static_cast<std::size_t>(octave * steps + step)].get(
+      [&] { return std::make_unique<const Row>(make_row(degree_, lower, weight)); });
 }
 
 }  // namespace marrow

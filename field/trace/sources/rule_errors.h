@@ -23,6 +23,9 @@ class RuleErrors {
   struct Error {
     double field = 0, gradient = 0;
   };
+  /// What rows are for: w = 1; any w = ((1 + k s) / (1 + |k|))^(n-1), ^n in the vector, with |k| <= 1; these times any
+  /// (1 + l s) / (1 + |l|) with |l| <= 1.
+  enum class Weight { Constant, Tapered, Leaning };
   using Row = std::array<Error, most_nodes + 1>;  ///< by the number of nodes; [0] is not used
 
   /// Of one degree n; made at its first use, row by row as they are asked for.
@@ -31,8 +34,7 @@ class RuleErrors {
   /// Where there are rows, in half lengths of the piece.
   static constexpr double least_distance = 0.25, end_of_distances = 16;
   /// The row of the largest distance that is not above this one; in the range above.
-  /// `tapered`: for any w = ((1 + k s) / (1 + |k|))^(n-1), ^n in the vector, with |k| <= 1; else for w = 1.
-  const Row& row(double distance, bool tapered) const;
+  const Row& row(double distance, Weight) const;
 
  private:
   static constexpr int least_exponent = -1;      // frexp() of least_distance
@@ -40,7 +42,7 @@ class RuleErrors {
   explicit RuleErrors(int degree) : degree_(degree) {}
 
   int degree_;
-  std::array<Lazy<Row>, octaves * steps> constant_, tapered_;
+  std::array<std::array<Lazy<Row>, octaves * steps>, 3> rows_;  // by the weight
 };
 
 }  // namespace marrow

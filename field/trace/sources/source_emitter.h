@@ -44,7 +44,7 @@ class SourceEmitter {
   double half_;
 };
 
-/// A part of a curve in the coordinates of a cube.
+/// A part of a curve, one that does not lean, in the coordinates of a cube.
 CurvePiece curve_piece(const Piece&, int nodes, const Vec3d& center, double half, int degree);
 
 }  // namespace marrow

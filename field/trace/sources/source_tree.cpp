@@ -49,12 +49,14 @@ class NodeSums {
       add(p.from, p.mass, p.radius);
       return;
     }
-    // w tau |q|^2 is a polynomial of degree n + 2 <= 22 along the piece; m nodes are exact up to 2 m - 1.
-    const GaussNodes rule = gauss_legendre(std::min(degree_ / 2 + 2, max_gauss_nodes));
+    // w tau |q|^2 is a polynomial of degree n + 2 <= 22 along the piece, n + 3 of one that leans; m nodes are exact up
+    // to 2 m - 1.
+    const int nodes = degree_ / 2 + (p.lean == 0 ? 2 : 3);
+    const GaussNodes rule = gauss_legendre(std::min(nodes, max_gauss_nodes));
     const double unit = p.mass / integer_power(p.radius, degree_ - 1);
     for (std::size_t k = 0; k < rule.positions.size(); ++k) {
       const double s = rule.positions[k], tau = p.radius_from + (p.radius_to - p.radius_from) * s;
-      add(lerp(p.from, p.to, s), rule.weights[k] * unit * integer_power(tau, degree_ - 1), tau);
+      add(lerp(p.from, p.to, s), rule.weights[k] * unit * integer_power(tau, degree_ - 1) * p.weight_at(s), tau);
     }
   }
   void add(const SourceNode& n) {

@@ -22,6 +22,17 @@ inline V16 cube_share(V16 sizes, V16 distance) {
   return share;
 }
 
+// Where sources of a piece count linearly more towards one end, of which its share is.
+inline V16 weight_at(const float* group, float s) {
+  const V16 lean = load(group + 208);
+  return select(lean > 0.0F, 1.0F - lean, splat(1)) + lean * s;
+}
+// What that adds to the errors of rules, as a radius that changes does (quadrature.h).
+inline V16 widened_by_lean(const float* group, V16 distance) {
+  const V16 lean = load(group + 208);
+  return 1.0F + select(lean < 0.0F, V16{} - lean, lean) * distance / larger(load(group + 160), splat(1e-30F));
+}
+
 struct FarLanes {
   V16 far;               // 1 or 0
   V16 f_error, g_error;  // of lanes that are far
@@ -69,6 +80,7 @@ inline FarLanes far_lanes(const float* group, const FarQuery& query) {
   const V16 widened = 1.0F + slope * near / larger(size * tau, splat(1e-30F));
   V16 scale = share * inverse_power<Exponent>(near_high * near_high, m);
   for (int k = 1; k < m; ++k) scale = scale * widened;
+  if (query.some_lean) scale = scale * widened_by_lean(group, near);
   const V16 g_scale = scale * widened * near_high;
   V16 shrink = splat(1);
   for (int nodes = 1; nodes <= query.most_nodes; ++nodes) {
@@ -145,7 +157,8 @@ inline void add_far_nodes(const float* group, const FarQuery& query, const FarLa
     const V16 ratio2 = radius * radius * inverse2;
     // w |r|^-m, w = share tau tau(s)^(n-1) for curves of m = n; share tau^m for points
     const V16 lift = query.points ? splat(1) : tau / radius;
-    const V16 field = gauss_weight[nodes][k] * share * lift * inverse_power<Exponent>(ratio2, m);
+    V16 field = gauss_weight[nodes][k] * share * lift * inverse_power<Exponent>(ratio2, m);
+    if (query.some_lean) field = field * weight_at(group, s);
     const V16 scale = inverse2 * query.half;
     sums.add(rx * scale, ry * scale, rz * scale, select(lanes_far.far > 0.0F, field, V16{}), radius * per_half);
   }
