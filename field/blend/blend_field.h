@@ -108,7 +108,7 @@ struct BlendSample {
   double si_norm = 0;          ///< G = |si_gradient|
   double alpha = 0;            ///< radians, as used at p
   double corrected = 0;        ///< C(f, G)
-  Vec3d corrected_gradient{};  ///< closed form   [field-maths 5, tracing 4]
+  Vec3d corrected_gradient{};  ///< in closed form
 };
 BlendSample evaluate(const BlendField&, const Vec3d& p);
 

@@ -99,7 +99,7 @@ struct Primitive {
 };
 
 enum class KernelFamily { Inverse, Cauchy, Compact };
-/// Degree n >= 3 of the kernel family; the degree of a point is n-1, of a curve n (field-maths sec. 1; the other way
+/// Degree n >= 3 of the kernel family; the degree of a point is n-1, of a curve n (so both fall alike; the other way
 /// round for the compact kernel).
 struct Kernel {
   KernelFamily family = KernelFamily::Inverse;

@@ -10,7 +10,7 @@ namespace marrow {
 
 // In polar coordinates about the foot the integral over the distance from it is (h^-q - d^-q) / q, h the height of the
 // point, q = m - 2 > 0, and d taken on the border, so that the integral of d^-m over the plate is
-//   1/q sum over sides of e int (h^-q - d^-q) / (t^2 + e^2) dt, with e for `inside`.   [field-maths 3.4; plate.h]
+//   1/q sum over sides of e int (h^-q - d^-q) / (t^2 + e^2) dt, with e for `inside`.   [plate.h]
 // Both functions leave out the 1/q and add what is left: of q to the first sum, of q + 2, q + 4, ... to those after it.
 
 /// From the foot, over h^-q: the fraction is h^-q d^-2 (1 - x^(q/2)) / (1 - x), x = h^2 / d^2, a sum of powers of x,

@@ -14,7 +14,7 @@ namespace marrow {
 template <Derivatives>
 SkeletonSample triangle_by_lines(const TriangleSkeleton&, const Vec3d& p, int family_degree);
 
-/// Integrals along its three sides, some hundred nodes each.   [field-maths 3.4; tapered_plate.h]
+/// Integrals along its three sides, some hundred nodes each.   [tapered_plate.h]
 /// Nothing where the triangle is narrow against its distance from p, so that what its sides give would cancel: there
 /// lines are few. Nor where a radius that varies would take more than three digits.
 template <Derivatives>

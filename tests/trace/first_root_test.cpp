@@ -1,6 +1,7 @@
 // First roots against an independent oracle: none missed, none made up, all in place.
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <optional>
 #include <string>
 
@@ -264,67 +265,55 @@ TEST(FirstRoot, OnlyWhatTouchesTheSurfaceIsNotCertified) {
   EXPECT_LE(undecided, hits / 1000);
 }
 
-TEST(FirstRoot, AgreesWithTheOracleWhereEachSkeletonHasItsAngle) {
-  Random random(75);
+// In scenes that a function of random numbers, a setting and a count of primitives makes.
+void expect_the_oracles_roots(Random random, std::initializer_list<Setting> settings, std::initializer_list<int> counts,
+                              const char* of, const auto& make_scene) {
   Tally all;
-  for (const int n : {3, 4, 5})
-    for (const Projection projection : {Projection::Paper, Projection::Exact})
-      for (const int count : {2, 9}) {
-        const Setting s{n, 0, true, projection};
-        Judge judge(random_angled_scene(random, s, count));
-        for (int i = 0; i < 30; ++i) judge.check(any_ray(random, judge.field()));
-        expect_clean(judge, s);
-        all.add(judge.tally);
-      }
-  all.print("an angle for each skeleton");
-  EXPECT_GT(all.hits, 100);
-}
-
-TEST(FirstRoot, AgreesWithTheOracleWhereAnglesAreLinearAlongSkeletons) {
-  Random random(102);
-  Tally all;
-  for (const int n : {3, 4, 5})
-    for (const Projection projection : {Projection::Paper, Projection::Exact})
-      for (const int count : {2, 9}) {
-        const Setting s{n, 0, true, projection};
-        Judge judge(with_linear_angles(random_angled_scene(random, s, count), random));
-        for (int i = 0; i < 30; ++i) judge.check(any_ray(random, judge.field()));
-        expect_clean(judge, s);
-        all.add(judge.tally);
-      }
-  all.print("angles along skeletons");
-  EXPECT_GT(all.hits, 100);
-}
-
-TEST(FirstRoot, AgreesWithTheOracleWhereDirectionsGiveTheAngle) {
-  Random random(76);
-  Tally all;
-  for (const int n : {3, 4, 5})
-    for (const Projection projection : {Projection::Paper, Projection::Exact})
-      for (const int count : {2, 12}) {
-        const Setting s{n, 1, true, projection};
-        Judge judge(random_stranded_scene(random, s, count));
-        for (int i = 0; i < 30; ++i) judge.check(any_ray(random, judge.field()));
-        expect_clean(judge, s);
-        all.add(judge.tally);
-      }
-  all.print("directions of strands");
-  EXPECT_GT(all.hits, 100);
-}
-
-TEST(FirstRoot, AgreesWithTheOracleWhereEachStrandHasBoundsOfItsOwn) {
-  Random random(77);
-  Tally all;
-  for (const int n : {3, 4, 5, 8})
-    for (const int count : {2, 3, 12}) {
-      const Setting s{n, 1, true, n == 4 ? Projection::Exact : Projection::Paper};
-      Judge judge(with_own_bounds(random_stranded_scene(random, s, count), random));
+  for (const Setting& s : settings)
+    for (const int count : counts) {
+      Judge judge(make_scene(random, s, count));
       for (int i = 0; i < 30; ++i) judge.check(any_ray(random, judge.field()));
       expect_clean(judge, s);
       all.add(judge.tally);
     }
-  all.print("directions of strands with bounds of their own");
+  all.print(of);
   EXPECT_GT(all.hits, 100);
+}
+
+// Alpha is told by the scene.
+constexpr std::initializer_list<Setting> angle_settings{
+    {3, 0, true, Projection::Paper}, {3, 0, true, Projection::Exact}, {4, 0, true, Projection::Paper},
+    {4, 0, true, Projection::Exact}, {5, 0, true, Projection::Paper}, {5, 0, true, Projection::Exact}};
+constexpr std::initializer_list<Setting> own_bounds_settings{{3, 0, true, Projection::Paper},
+                                                             {4, 0, true, Projection::Exact},
+                                                             {5, 0, true, Projection::Paper},
+                                                             {8, 0, true, Projection::Paper}};
+
+TEST(FirstRoot, AgreesWithTheOracleWhereEachSkeletonHasItsAngle) {
+  expect_the_oracles_roots(Random(75), angle_settings, {2, 9}, "an angle for each skeleton",
+                           [](Random& r, const Setting& s, int count) { return random_angled_scene(r, s, count); });
+}
+
+TEST(FirstRoot, AgreesWithTheOracleWhereAnglesAreLinearAlongSkeletons) {
+  expect_the_oracles_roots(
+      Random(102), angle_settings, {2, 9}, "angles along skeletons",
+      [](Random& r, const Setting& s, int count) { return with_linear_angles(random_angled_scene(r, s, count), r); });
+}
+
+TEST(FirstRoot, AgreesWithTheOracleWhereDirectionsGiveTheAngle) {
+  expect_the_oracles_roots(Random(76), angle_settings, {2, 12}, "directions of strands",
+                           [](Random& r, Setting s, int count) {
+                             s.alpha = 1;
+                             return random_stranded_scene(r, s, count);
+                           });
+}
+
+TEST(FirstRoot, AgreesWithTheOracleWhereEachStrandHasBoundsOfItsOwn) {
+  expect_the_oracles_roots(Random(77), own_bounds_settings, {2, 3, 12},
+                           "directions of strands with bounds of their own", [](Random& r, Setting s, int count) {
+                             s.alpha = 1;
+                             return with_own_bounds(random_stranded_scene(r, s, count), r);
+                           });
 }
 
 }  // namespace

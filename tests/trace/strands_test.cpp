@@ -4,20 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "field/trace/cells/stranded_level.h"
-#include "field/trace/cells/weak_strands.h"
 #include "field/trace/levels/level_buffer.h"
-#include "tests/trace/stage.h"
+#include "tests/trace/crowd.h"
 
 namespace marrow::test {
 namespace {
-
-constexpr DirectionBounds bounds{0.6, std::numbers::pi / 2};
 
 // Thin and all near the origin: at their common surface each has 1 / count of the field, and few are far enough for a
 // quadratic to tell them.
@@ -27,25 +23,9 @@ BlendField crowd(Random& random, int count) {
     const Vec3d middle = random.vector(0.05), half = random_direction(random) * 0.15;
     blend.segments.add({.from = middle - half, .to = middle + half, .radius_from = 0.02, .radius_to = 0.02}, {});
     blend.segments.strands.push_back(static_cast<std::uint32_t>(k));
-    blend.direction_bounds.push_back(bounds);
+    blend.direction_bounds.push_back(strand_bounds);
   }
   return blend;
-}
-
-struct Crowd {
-  explicit Crowd(BlendField field)
-      : stage(std::move(field)), strands(stage.field, stage.sources.pieces(), stage.kernels), context(stage.context) {
-    context.strands = &strands;
-  }
-
-  Stage stage;
-  Strands strands;
-  Block::Context context;
-};
-
-double exact_share(const Crowd& crowd, const BlendSample& at) {
-  const AngleRange& range = crowd.strands.range();
-  return (at.alpha - range.least) / (range.most - range.least);
 }
 
 // Over what the block states.
@@ -119,7 +99,7 @@ TEST(Strands, OfEqualOnesAsManyAreListed) {
   for (std::uint32_t k = 0; k < most_strands + 100; ++k) {
     blend.segments.add({.from = {-0.1, 0, 0}, .to = {0.1, 0, 0}, .radius_from = 0.02, .radius_to = 0.02}, {});
     blend.segments.strands.push_back(k);
-    blend.direction_bounds.push_back(bounds);
+    blend.direction_bounds.push_back(strand_bounds);
   }
   const Crowd crowd(std::move(blend));
   int most = 0;
@@ -201,53 +181,6 @@ TEST(Strands, PatchesTellTheShareOfRandomScenes) { expect_patches_tell_the_share
 
 TEST(Strands, PatchesTellTheShareWhereEachStrandHasBoundsOfItsOwn) { expect_patches_tell_the_share(Random(99), true); }
 
-// A thick strand beside a thin one far away, whose field is small in floats or vanishes there: alpha is that of the
-// pair all the same.
-void expect_weak_others_tell_the_angle(Random random, const auto& bounds_of) {
-  struct Pair {
-    int degree;
-    double distance, thin;
-  };
-  for (const auto& [degree, distance, thin] : {Pair{4, 3, 0.05}, Pair{6, 10, 0.001}, Pair{8, 10, 0.002},
-                                               Pair{12, 10, 0.01}, Pair{12, 100, 0.001}, Pair{20, 20, 0.01}}) {
-    BlendField blend = random_scene(random, {degree, 1}, 0);
-    const auto add = [&](const Vec3d& middle, const Vec3d& half, double radius) {
-      blend.segments.strands.push_back(static_cast<std::uint32_t>(blend.direction_bounds.size()));
-      blend.segments.add({middle - half, middle + half, radius, radius}, {});
-      blend.direction_bounds.push_back(bounds_of(blend.direction_bounds.size()));
-    };
-    add({0, 0, 0}, {0.05, 0, 0}, 0.1);
-    add(random_direction(random) * distance, normalize(Vec3d{1, 0.2, 0}).vec() * (2 * thin), thin);
-    const Crowd crowd(std::move(blend));
-    int places = 0;
-    double largest = 0;
-    for (std::size_t i = 0; i < crowd.stage.cells.size(); ++i) {
-      const Block block(crowd.context, crowd.stage.cells[i]);
-      if (length(block.center()) > 0.5) continue;
-      for (int k = 0; k < 20; ++k) {
-        const Vec3d x = random.vector(1);
-        const BlendSample exact = evaluate(crowd.stage.field, block.center() + x * block.half());
-        if (std::fabs(exact.corrected - 1) > 0.2) continue;
-        ++places;
-        largest = std::max(largest, std::fabs(block.share(x).share - exact_share(crowd, exact)));
-      }
-    }
-    std::cout << "  degree " << degree << ": " << places << " places, shares are off by " << largest << " at most\n";
-    EXPECT_GT(places, 10);
-    EXPECT_LT(largest, 3e-5) << "degree " << degree << " distance " << distance << " radius " << thin;
-  }
-}
-
-TEST(Strands, OfWeakOthersTellTheAngle) {
-  expect_weak_others_tell_the_angle(Random(96), [](std::size_t) { return bounds; });
-}
-
-TEST(Strands, OfWeakOthersTellTheAngleByBoundsOfTheirOwn) {
-  expect_weak_others_tell_the_angle(Random(101), [](std::size_t strand) {
-    return strand == 0 ? DirectionBounds{0.2, 0.9} : DirectionBounds{1.4, 0.7};
-  });
-}
-
 // What is left of the directions of a strand that runs back along itself is rounding: it has none, and crosses all.
 TEST(Strands, ThatRunBackHaveNoDirection) {
   Random random(98);
@@ -265,7 +198,7 @@ TEST(Strands, ThatRunBackHaveNoDirection) {
     add(a, b, radius, 0);
     add(b, scene % 2 == 0 ? a : a + beside, radius, 0);
     add(random.vector(1), random.vector(1), 0.2, 1);
-    blend.direction_bounds.assign(2, bounds);
+    blend.direction_bounds.assign(2, strand_bounds);
     const Crowd crowd(std::move(blend));
     for (const auto& cell : crowd.stage.cells) {
       const Block block(crowd.context, cell);
@@ -279,47 +212,6 @@ TEST(Strands, ThatRunBackHaveNoDirection) {
   std::cout << "  " << places << " places, shares are off by " << largest << " at most\n";
   EXPECT_GT(places, 100);
   EXPECT_LT(largest, 1e-4);
-}
-
-// In balls beside one strand and between several, of several segments each.
-TEST(Strands, FewOfThemCount) {
-  Random random(97);
-  for (const int degree : {4, 8, 20}) {
-    BlendField blend = random_scene(random, {degree, 1}, 0);
-    constexpr int count = 300;
-    for (int k = 0; k < count; ++k) {
-      const Vec3d middle = random.vector(1), half = random_direction(random) * 0.02, turn = random.vector(0.02);
-      blend.segments.add({middle - half, middle, 0.01, 0.01}, {});
-      blend.segments.add({middle, middle + half + turn, 0.01, 0.004}, {});
-      blend.segments.strands.insert(blend.segments.strands.end(), 2, static_cast<std::uint32_t>(k));
-      blend.direction_bounds.push_back(bounds);
-    }
-    const auto range = angle_range(blend);
-    ASSERT_TRUE(range);
-    double largest = 0, steepest = 0;
-    std::size_t kept = 0;
-    constexpr int balls = 40;
-    for (int i = 0; i < balls; ++i) {
-      const double reach = 0.01;
-      const Vec3d center = i % 2 == 0
-                               ? random.vector(1)
-                               : blend.segments.skeletons[static_cast<std::size_t>(2 * i)].from + random.vector(0.03);
-      const BlendField few = counting_strands(blend, center, reach);
-      kept += few.direction_bounds.size();
-      for (int k = 0; k < 5; ++k) {
-        const Vec3d p = center + random_direction(random) * reach;
-        const AngleShare by_all = exact_share(blend, *range, p), by_few = exact_share(few, *range, p);
-        largest = std::max(largest, std::fabs(by_all.value - by_few.value));
-        steepest = std::max(steepest, length(by_all.gradient - by_few.gradient) * reach);
-      }
-    }
-    const double mean = static_cast<double>(kept) / balls;
-    std::cout << "  degree " << degree << ": " << mean << " of " << count << " strands count, shares differ by "
-              << largest << ", over the ball by slopes by " << steepest << "\n";
-    EXPECT_LE(largest, 1e-6) << "degree " << degree;
-    EXPECT_LE(steepest, 1e-5) << "degree " << degree;
-    EXPECT_LT(mean, degree == 20 ? count / 3 : count + 1) << "degree " << degree;
-  }
 }
 
 // The faces of a small cube differ as the slopes in its middle say.

@@ -10,7 +10,7 @@ namespace {
 constexpr double inf = Box3::inf;
 const Vec3<Interval> unknown{Interval::everything(), Interval::everything(), Interval::everything()};
 
-// C is monotone in alpha at each f and G, so that the two ends bound it between them [tracing 3.3]; but not with
+// C is monotone in alpha at each f and G, so that the two ends bound it between them (trace/README.md); but not with
 // cavity under the compact kernel.
 Interval corrected(const BlendField& blend, const Correction& least, const Interval& alpha, const Interval& f,
                    const Interval& G) {

@@ -30,7 +30,7 @@ struct FieldWeight {
 
 /// Of an integral under kernels that fall with powers of distances, which is a sum of w |p - q|^-m: with d the least
 /// distance anywhere in the ball |grad ln f| <= m / d, and D^2 ln f, which is the mean of those of the summands and the
-/// variance of their grad ln, has a length of at most m / d^2 + m^2 / d^2 - |grad ln f|^2.   [tracing 3.1]
+/// variance of their grad ln, has a length of at most m / d^2 + m^2 / d^2 - |grad ln f|^2.
 /// Of others as of the part.
 FieldWeight weight_of(const SumBounds::Part&, double rho);
 /// Of the sum of fields, from their terms without the common factor; `common` is the slope of the logarithm of the sum

@@ -26,7 +26,7 @@ struct Terms {
   std::vector<double> radii;  // logarithms
 };
 
-// The near field of a skeleton is a sum of so high powers of distances.   [tracing 3.1]
+// The near field of a skeleton is a sum of so high powers of distances.
 int near_power(const auto& skeleton) { return LocalContact::near_degree - 1 + dimension_of(skeleton); }
 
 Terms terms_of(const BlendField& blend, const SumBounds& sum, const std::vector<SkeletonSample>& near) {

@@ -14,13 +14,13 @@ namespace {
 
 constexpr double inf = Box3::inf;
 
-// C is isotone and its clamp makes it no steeper than the curve: dC/df <= 1, dC/dG <= 1/g'(C).   [tracing 3.3]
+// C is isotone and its clamp makes it no steeper than the curve: dC/df <= 1, dC/dG <= 1/g'(C).   [trace/README.md]
 PartialBounds coarse_partials(const ReferenceCurve& curve, const Interval& value) {
   return {{0, 1}, {0, value.lo > 0 ? rounding::up(1 / curve.slope(value.lo), 8) : inf}};
 }
 
 // The partial derivatives of the projection onto the chord. The share psi falls with the angle and rises with the slope
-// of the chord. Where C is cut at 0, that by the angle is 0.   [field-maths 4.5]
+// of the chord. Where C is cut at 0, that by the angle is 0.
 PartialBounds chord_partials(const ReferenceCurve& curve, const Angles& angle, const Interval& f, const Interval& x_H) {
   const auto& [sine, cosine] = angle;
   const Interval s = chord_slope(curve, f, x_H), den = s * cosine + sine;
@@ -74,10 +74,10 @@ PartialBounds partial_bounds(const BlendField& blend, const Correction& c, const
   return chord_partials(curve, angle, f, x_H_of(curve, G));
 }
 
-// For alpha >= 0 C is isotone in both.   [tracing 3.3]
+// For alpha >= 0 C is isotone in both.   [trace/README.md]
 // Below 0, guarded or not, it is isotone in G. Along f the projection falls; behind the critical point C falls with a,
 // which along f is largest on the crest of the curves M_d: so C is largest at an end, or as f goes to 0, and least at
-// an end or on the crest.   [tracing 3.3; partials_below_zero.h]
+// an end or on the crest.   [partials_below_zero.h]
 Interval correction_bounds(const Correction& c, const Interval& f, const Interval& G) {
   if (c.alpha() >= 0) return {c.value(f.lo, G.lo) * (1 - 1e-12), c.value(f.hi, G.hi) * (1 + 1e-12)};
   const int n = c.degree();

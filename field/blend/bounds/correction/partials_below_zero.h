@@ -13,7 +13,7 @@ namespace marrow {
 ///   dC/df = -k (2 s - k - g'(f)) / (s - k)^2,   dC/dG = (s^2 / g'(x_H) - k) / (s - k)^2,
 ///   dC/dalpha = s (f - x_H) (1 + k^2) / (s - k)^2
 /// where s >= 2 k, that is unguarded; 2 s - k >= 3/2 s, and s >= (n-1)/n g'(f). Guarded they are -1, 2 / g'(x_H), 0.
-/// Behind the critical point C falls with a, half the way between the two skeletons of M_d.   [field-maths 4.4, 4.5, 5]
+/// Behind the critical point C falls with a, half the way between the two skeletons of M_d.   [Zanni et al. 2015, 4.2]
 PartialBounds partials_below_zero(const Correction& least, const Interval& alpha, const Interval& value,
                                   const Interval& f, const Interval& G);
 

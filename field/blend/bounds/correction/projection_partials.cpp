@@ -48,7 +48,7 @@ PartialBounds ProjectionPartials::at(const Interval& value, const Interval& f, c
   return G.hi < g.lo ? below : hull(below, on_line(value, f, {std::max(G.lo, g.lo), G.hi}));
 }
 
-// With the slope s of the chord, r = g'(f) / s, t = s / g'(x_H) and psi = s cos / (s cos + sin) (field-maths 4.5):
+// With the slope s of the chord, r = g'(f) / s, t = s / g'(x_H) and psi = s cos / (s cos + sin):
 //   dC/df = (1 - psi) (1 + psi (1 - r)), which falls with psi and with r, as r < 2 (largest_ratio() is 3/2 at most);
 //   dC/dG = (1 + psi (t - 1)) / (s + tan), linear in psi;   dC/dalpha = (g(f) - G) / (s cos + sin)^2.
 PartialBounds ProjectionPartials::on_chord(const CurveBounds::Span& all, const Interval& G) const {

@@ -1,5 +1,5 @@
 // What segments of Cani and Hornus may change by: R(H)^2 times a positive sum of |p - q|^-3, H the foot of p, which
-// moves no faster than p.   [field-maths 8.1]
+// moves no faster than p.   [Cani, Hornus 2001, sec. 4]
 #include <algorithm>
 #include <cmath>
 

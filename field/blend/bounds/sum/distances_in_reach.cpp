@@ -44,7 +44,7 @@ bool is_behind(const SegmentSkeleton& s, const SegmentPlace& place, const Ball& 
 
 // The end of which the scaled distance is the least from all of the ball. It has no other minimum along the segment, so
 // that an end has the least where it rises from there: where r_0 a + k D^2 < 0, D from that end, a along the segment
-// and k the slope of the radius. Over a ball that is largest where its gradient leads.   [field-maths 3.2]
+// and k the slope of the radius. Over a ball that is largest where its gradient leads.
 std::optional<PointSkeleton> only_end(const SegmentSkeleton& s, const Ball& ball) {
   const double size = length(s.to - s.from);
   const auto is_nearest = [&](const PointSkeleton& end, const PointSkeleton& other) {

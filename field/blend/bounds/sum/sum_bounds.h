@@ -52,7 +52,7 @@ enum class Wanted { Value, Slopes };
 /// point of the box, which follows from the least distance of each primitive.
 class SumBounds {
  public:
-  /// Relative error of the closed forms, with a margin of ten.   [field-maths 3.3: 1.2e-13; triangles 2.6e-12]
+  /// Relative error of the closed forms, with a margin of ten.   [seen: 1.2e-13; triangles 2.6e-12]
   static constexpr double sample_error = 3e-11;
   /// Relative error of integrals under the compact kernel, over what they could be at most.
   static constexpr double compact_error = 1e-10;
@@ -63,7 +63,7 @@ class SumBounds {
 
   /// A primitive that is a positive sum of |p - q|^-m with all q at least `distance` away from the middle and radii up
   /// to `radius`. Its k-th derivatives are at most m (m+1) ... (m+k-1) / distance^k times itself, and within rho of the
-  /// middle all distances shrink by 1 - rho / distance at most.   [tracing 3.1]
+  /// middle all distances shrink by 1 - rho / distance at most.   [taylor_remainder.h]
   void add(const SkeletonSample&, double distance, double radius, int m);
   /// A primitive of which only bounds are known.
   struct Between {
