@@ -102,29 +102,31 @@ bool points_are_strands(const BlendField& blend) {
   });
 }
 
-// The tracer of blends wants points that are strands by themselves.
-std::string untraceable_directions(const BlendField& blend) {
-  if (std::ranges::any_of(blend.direction_bounds,
-                          [](const DirectionBounds& b) { return std::min(b.least, b.most) < 0; }))
-    return "directions with an angle below 0 are not known to the tracer of blends";
-  if (!points_are_strands(blend))
-    return "points of the strand of others, or of segments, are not known to the tracer of blends";
-  return {};
+// Nearer to a right angle the guard bends the curve where surfaces are (curve/angle_tables.h).
+constexpr double least_of_range = -0.8;
+
+bool all_angles_are_known(const BlendField& blend) {
+  const auto is_known = [](double alpha) { return alpha >= least_of_range; };
+  bool known = std::ranges::all_of(blend.direction_bounds,
+                                   [&](const DirectionBounds& b) { return is_known(b.least) && is_known(b.most); });
+  blend.for_each_list([&](const auto& list) {
+    known = known && std::ranges::all_of(list.alphas, is_known) && std::ranges::all_of(list.alphas_to, is_known);
+  });
+  return known;
 }
 
-// For a range of angles the tracer has bounds above 0 only, for angles that each primitive has one of.
+// For a range of angles the tracer of blends has bounds with cavity only, and for angles that each primitive has one
+// of. Points are to be strands by themselves.
 std::string untraceable_angles(const BlendField& blend) {
-  const auto unknown = [](const std::string& what) { return what + " is not known to the tracer of blends"; };
-  if (!blend.cavity) return unknown("`cavity: false` with an `alpha` that varies");
+  const auto unknown = [](const std::string& what) { return what + " not known to the tracer of blends"; };
+  if (!blend.cavity) return unknown("`cavity: false` with an `alpha` that varies is");
   if (single_angle(blend)) return {};
-  if (!blend.direction_bounds.empty()) return untraceable_directions(blend);
-  if (!blend.alpha_per_skeleton) return unknown("an `alpha` that varies other than by skeleton or direction");
-  bool negative = false;
-  blend.for_each_list([&](const auto& list) {
-    for (const auto* alphas : {&list.alphas, &list.alphas_to})
-      for (const double alpha : *alphas) negative = negative || alpha < 0;
-  });
-  return negative ? unknown("an `alpha` below 0 among several") : std::string{};
+  if (!blend.alpha_per_skeleton && blend.direction_bounds.empty())
+    return unknown("an `alpha` that varies other than by skeleton or direction is");
+  if (!all_angles_are_known(blend)) return unknown("an `alpha` below -0.8 among several is");
+  if (!blend.direction_bounds.empty() && !points_are_strands(blend))
+    return unknown("points of the strand of others, or of segments, are");
+  return {};
 }
 
 // How many radii long a segment is, by the radius at each place.

@@ -170,7 +170,9 @@ TEST(Alpha, IsASingleOneWhereTheRuleGivesNoOther) {
   blend.points.strands[1] = 1;
   blend.direction_bounds[1].most = 1.4;
   EXPECT_TRUE(untraceable_part(blend).empty());
-  blend.direction_bounds[1].least = -0.1;
+  blend.direction_bounds[1].least = -0.8;
+  EXPECT_TRUE(untraceable_part(blend).empty());
+  blend.direction_bounds[1].least = -0.81;
   EXPECT_FALSE(untraceable_part(blend).empty());
   blend.segments = {};
   blend.direction_bounds.pop_back();
@@ -183,7 +185,9 @@ TEST(Alpha, IsASingleOneWhereTheRuleGivesNoOther) {
   blend.points.alphas[2] = 0.8;
   EXPECT_FALSE(single_angle(blend));
   EXPECT_TRUE(untraceable_part(blend).empty());
-  blend.points.alphas[2] = -0.1;
+  blend.points.alphas[2] = -0.8;
+  EXPECT_TRUE(untraceable_part(blend).empty());
+  blend.points.alphas[2] = -0.81;
   EXPECT_FALSE(untraceable_part(blend).empty());
 }
 

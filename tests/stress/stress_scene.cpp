@@ -167,13 +167,14 @@ Draft draft_of(std::size_t kind, Random& random) {
   return kind < draws.size() ? draws[kind](random) : Draft{odd_blend(kind - draws.size(), random)};
 }
 
-// Of every other scene of varying angles these are linear along skeletons, or strands have bounds of their own: from
-// numbers of its own, so that what all scenes are does not depend on it.
+// Of every other scene of varying angles these are linear along skeletons, or strands have bounds of their own, and of
+// half of those some are below 0: from numbers of its own, so that what all scenes are does not depend on it.
 BlendField with_other_angles(BlendField blend, std::uint64_t number) {
   if (number < first_varied_scene || number >= first_odd_scene || number / varied_kinds % 2 == 0) return blend;
   Random random(~number, Random::Silent{});
-  return blend.alpha_per_skeleton ? with_linear_angles(std::move(blend), random)
-                                  : with_own_bounds(std::move(blend), random);
+  blend = blend.alpha_per_skeleton ? with_linear_angles(std::move(blend), random)
+                                   : with_own_bounds(std::move(blend), random);
+  return number / varied_kinds % 4 == 1 ? blend : with_angles_below_zero(std::move(blend), random);
 }
 
 }  // namespace

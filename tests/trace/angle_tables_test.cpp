@@ -6,6 +6,7 @@
 #include <iostream>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -90,7 +91,9 @@ const std::vector<NamedTables>& all_tables() {
       for (const bool cavity : {true, false})
         for (int n = 3; n <= 6; ++n)
           for (const Range range : {Range{1.16, 1.57}, Range{0.02, std::numbers::pi / 2}, Range{0.4, 1.36},
-                                    Range{0, 0.4}, Range{1.5, std::numbers::pi / 2}, Range{1.3, 1.3001}}) {
+                                    Range{0, 0.4}, Range{1.5, std::numbers::pi / 2}, Range{1.3, 1.3001},
+                                    Range{-0.3, 1.2}, Range{-0.8, 0.1}, Range{-0.03, 0.02}, Range{-0.8, -0.7}}) {
+            if (range.least < 0 && projection == Projection::Exact) continue;
             const Correction like(n, range.least, cavity, projection);
             if (!(critical_field_of(like) < 100)) continue;
             made.push_back(
@@ -149,6 +152,55 @@ TEST(AngleCurves, AreOnTheCurvesOfTheirAngles) {
     EXPECT_LE(rough, 0.01 * places) << name;
   }
   std::cout << "  C is off by up to " << largest << '\n';
+}
+
+// The f from least_field on at which a curve has places, and its G, from the axis G = 0 on.
+std::vector<std::pair<double, double>> places_on(const TurnedCurve& curve, double least_field) {
+  constexpr int count = 600;
+  std::vector<std::pair<double, double>> places;
+  for (int i = 0; i <= count; ++i) {
+    const TurnedLine line = curve.line_of(std::lerp(curve.begin(), curve.end(), static_cast<double>(i) / count));
+    const double v = curve.value(line.u, 0, 0);
+    if (line.x(v) < least_field) break;
+    places.emplace_back(line.x(v), line.y(v));
+  }
+  return places;
+}
+
+// Below 0: up to the crest curves rise over f, no steeper than the tables say, and fall behind it.
+TEST(AngleCurves, CrestsLieWhereTheTablesSay) {
+  constexpr double least_field = 0.1, rounding = 1e-9;
+  Random random(40);
+  int crests = 0;
+  for (const int n : {3, 4, 6, 9, 14, 20})
+    for (const double least : {-0.8, -0.35, -0.02}) {
+      const double most = least + 0.1;
+      const Correction like(n, least, true, Projection::Paper);
+      const AngleCurves curves(like, least, most, UpToGradient{usual_gradient(like)});
+      const AngleTables tables = curves.tables();
+      for (int step = 0; step < tables.count; ++step) {
+        const double alpha = std::lerp(least, most, (step + random.between(0, 1)) / tables.count);
+        const Correction correction(n, alpha, true, Projection::Paper);
+        const TurnedCurve curve(correction, critical_field_of(correction), turn_for(alpha, alpha),
+                                UpToGradient{usual_gradient(like)});
+        const double from = static_cast<double>(tables.crest_from[step]),
+                     to = static_cast<double>(tables.crest_to[step]), rise = static_cast<double>(tables.rise[step]);
+        const auto places = places_on(curve, least_field);
+        for (std::size_t i = 1; i < places.size(); ++i) {
+          const auto [x, y] = places[i];
+          const auto [x_behind, y_behind] = places[i - 1];
+          if (x > to) { EXPECT_GE(y, y_behind - rounding) << "n=" << n << " alpha=" << alpha << " f=" << x; }
+          if (x_behind < from) { EXPECT_LE(y, y_behind + rounding) << "n=" << n << " alpha=" << alpha << " f=" << x; }
+          EXPECT_LE(y_behind - y, rise * (x_behind - x) + rounding) << "n=" << n << " alpha=" << alpha << " f=" << x;
+        }
+        // Near 0, where curves hardly rise at all, the crest moves far.
+        EXPECT_LT(to - from, alpha < -0.05 ? 0.25 : 10) << "n=" << n << " alpha=" << alpha;
+        EXPECT_LT(rise, 7) << "n=" << n << " alpha=" << alpha;
+        crests += to > least_field;
+      }
+    }
+  std::cout << "  " << crests << " crests\n";
+  EXPECT_GT(crests, 50);
 }
 
 }  // namespace

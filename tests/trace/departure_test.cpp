@@ -70,7 +70,9 @@ TEST(Departure, MeetsWhatIsMetAnewWhereDirectionsGiveTheAngle) {
   Random random(173);
   Counts count;
   for (const int n : {3, 4, 5}) expect_like(random, random_stranded_scene(random, {n, 1}, 7), count);
-  expect_like(random, with_own_bounds(random_stranded_scene(random, {4, 1}, 7), random), count);
+  const BlendField own = with_own_bounds(random_stranded_scene(random, {4, 1}, 7), random);
+  expect_like(random, own, count);
+  expect_like(random, with_angles_below_zero(own, random), count);
   expect_few_apart(count);
 }
 

@@ -284,6 +284,7 @@ void expect_the_oracles_roots(Random random, std::initializer_list<Setting> sett
 constexpr std::initializer_list<Setting> angle_settings{
     {3, 0, true, Projection::Paper}, {3, 0, true, Projection::Exact}, {4, 0, true, Projection::Paper},
     {4, 0, true, Projection::Exact}, {5, 0, true, Projection::Paper}, {5, 0, true, Projection::Exact}};
+constexpr std::initializer_list<Setting> below_zero_settings{{3}, {4}, {5}, {8}};
 constexpr std::initializer_list<Setting> own_bounds_settings{{3, 0, true, Projection::Paper},
                                                              {4, 0, true, Projection::Exact},
                                                              {5, 0, true, Projection::Paper},
@@ -298,6 +299,24 @@ TEST(FirstRoot, AgreesWithTheOracleWhereAnglesAreLinearAlongSkeletons) {
   expect_the_oracles_roots(
       Random(102), angle_settings, {2, 9}, "angles along skeletons",
       [](Random& r, const Setting& s, int count) { return with_linear_angles(random_angled_scene(r, s, count), r); });
+}
+
+TEST(FirstRoot, AgreesWithTheOracleWhereSomeAnglesAreBelowZero) {
+  expect_the_oracles_roots(Random(103), below_zero_settings, {2, 3, 9}, "angles of skeletons, some below 0",
+                           [](Random& r, const Setting& s, int count) {
+                             return with_angles_below_zero(random_angled_scene(r, s, count), r);
+                           });
+  expect_the_oracles_roots(Random(104), below_zero_settings, {2, 3, 9}, "angles along skeletons, some below 0",
+                           [](Random& r, const Setting& s, int count) {
+                             return with_angles_below_zero(with_linear_angles(random_angled_scene(r, s, count), r), r);
+                           });
+  expect_the_oracles_roots(Random(105), below_zero_settings, {2, 3, 9}, "bounds of strands, some below 0",
+                           [](Random& r, Setting s, int count) {
+                             s.alpha = 1;
+                             BlendField blend = random_stranded_scene(r, s, count);
+                             if (count > 2) blend = with_own_bounds(std::move(blend), r);
+                             return with_angles_below_zero(std::move(blend), r);
+                           });
 }
 
 TEST(FirstRoot, AgreesWithTheOracleWhereDirectionsGiveTheAngle) {

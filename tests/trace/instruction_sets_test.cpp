@@ -42,33 +42,43 @@ TEST(InstructionSets, UnknownOnesAreRefused) {
   EXPECT_FALSE(BlendTracer::make(BlendField{}, {.instruction_set = "mmx"}));
 }
 
-// Stand for one of its own for each skeleton, and for one by directions, whose bounds are those of all strands or of
-// each.
-constexpr double angle_each = 0.125, by_direction = 0.25, by_own_direction = 0.375, angle_along = 0.5;
+using Scene = BlendField (*)(Random&, const Setting&);
+
+BlendField one_angle(Random& r, const Setting& s) { return random_scene(r, s, 4); }
+BlendField of_skeletons(Random& r, const Setting& s) { return random_angled_scene(r, s, 4); }
+BlendField along_skeletons(Random& r, const Setting& s) { return with_linear_angles(of_skeletons(r, s), r); }
+BlendField of_directions(Random& r, const Setting& s) { return random_stranded_scene(r, s, 5); }
+BlendField of_own_directions(Random& r, const Setting& s) { return with_own_bounds(of_directions(r, s), r); }
+template <Scene Make>
+BlendField below_zero(Random& r, const Setting& s) {
+  return with_angles_below_zero(Make(r, s), r);
+}
+
+struct Kind {
+  Setting setting;
+  Scene make = one_angle;
+};
 
 TEST(InstructionSets, GiveTheSameBits) {
   ASSERT_GE(sets_here().size(), 2U) << "nothing to compare on this machine";
   Random random(91);
   int rays = 0, hits = 0;
-  const Setting settings[] = {{3, 1.0},
-                              {4, contact_alpha(4)},
-                              {4, -0.4},
-                              {5, 0},
-                              {7, 1.2},
-                              {4, angle_each},
-                              {5, angle_along},
-                              {4, by_direction},
-                              {4, 0.8},
-                              {4, by_own_direction},
-                              {5, by_own_direction}};
+  const Kind kinds[] = {{{3, 1.0}},
+                        {{4, contact_alpha(4)}},
+                        {{4, -0.4}},
+                        {{5, 0}},
+                        {{7, 1.2}},
+                        {{4}, of_skeletons},
+                        {{5}, along_skeletons},
+                        {{4}, of_directions},
+                        {{4, 0.8}},
+                        {{4}, of_own_directions},
+                        {{5}, of_own_directions},
+                        {{4}, below_zero<along_skeletons>},
+                        {{3}, below_zero<of_own_directions>}};
   int far_degree = high_far_degree;  // in turns
-  for (const Setting& s : settings) {
-    const BlendField blend = s.alpha == angle_each     ? random_angled_scene(random, s, 4)
-                             : s.alpha == angle_along  ? with_linear_angles(random_angled_scene(random, s, 4), random)
-                             : s.alpha == by_direction ? random_stranded_scene(random, s, 5)
-                             : s.alpha == by_own_direction
-                                 ? with_own_bounds(random_stranded_scene(random, s, 5), random)
-                                 : random_scene(random, s, 4);
+  for (const auto& [s, make] : kinds) {
+    const BlendField blend = make(random, s);
     const auto variants = variants_here(far_degree);
     far_degree = far_degree == high_far_degree ? low_far_degree : high_far_degree;
     std::vector<AllCells> tracers;

@@ -46,6 +46,11 @@ double least_mean_direction(const BlendField& blend) {
   return std::max(least, 0.01);
 }
 
+// Below an angle of 0 C first falls, then rises in f.
+bool is_below(const Correction& c, double f_low, double f_high, double g) {
+  return c.value(f_high, g) < 1 && (c.alpha() >= 0 || c.value(f_low, g) < 1);
+}
+
 }  // namespace
 
 Oracle::Oracle(const BlendField& blend) : blend_(blend), correction_(correction_of(blend)) {
@@ -56,7 +61,9 @@ Oracle::Oracle(const BlendField& blend) : blend_(blend), correction_(correction_
     least_ = std::min(least_, alpha);
     most_ = std::max(most_, alpha);
   };
-  blend.for_each_list([&](const auto& list) { std::ranges::for_each(list.alphas, include); });
+  blend.for_each_list([&](const auto& list) {
+    for (const auto* alphas : {&list.alphas, &list.alphas_to}) std::ranges::for_each(*alphas, include);
+  });
   for (const DirectionBounds& b : blend.direction_bounds) {
     include(b.least);
     include(b.most);
@@ -111,10 +118,10 @@ bool Oracle::outside(const Local& l, double step) const {
     // Means whose weights have logarithms no steeper than n / distance move by the range times that at most; products
     // of two weights by twice that, and the mean direction v of a strand, whose eighth power counts, by 2 / |v|.
     const double turn = steepness_ * (most_ - least_) * blend_.degree * step / (l.distance - step);
-    return correction_with(std::max(least_, l.alpha - turn)).value(high, g) < 1 &&
-           correction_with(std::min(most_, l.alpha + turn)).value(high, g) < 1;
+    return is_below(correction_with(std::max(least_, l.alpha - turn)), low, high, g) &&
+           is_below(correction_with(std::min(most_, l.alpha + turn)), low, high, g);
   }
-  return correction_.value(high, g) < 1 && (blend_.alpha >= 0 || correction_.value(low, g) < 1);
+  return is_below(correction_, low, high, g);
 }
 
 // `share` of the distance to the skeleton is what the step before could prove: twice that is tried first.

@@ -229,7 +229,9 @@ TEST(PacketsOfVariedAngles, FindWhatSingleRaysFind) {
   for (const BlendField& blend :
        {random_angled_scene(random, {4, 0}, 5), with_linear_angles(random_angled_scene(random, {4, 0}, 5), random),
         random_stranded_scene(random, {4, 0}, 5), random_stranded_scene(random, {5, 0}, 5),
-        with_own_bounds(random_stranded_scene(random, {4, 0}, 5), random)})
+        with_own_bounds(random_stranded_scene(random, {4, 0}, 5), random),
+        with_angles_below_zero(random_angled_scene(random, {3, 0}, 5), random),
+        with_angles_below_zero(with_own_bounds(random_stranded_scene(random, {4, 0}, 5), random), random)})
     for (const std::string& set : sets_here()) {
       auto made = BlendTracer::make(blend, {.instruction_set = set});
       ASSERT_TRUE(made);

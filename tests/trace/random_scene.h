@@ -1,8 +1,10 @@
 // Blends of a few random points and segments, as the laws of tracing want them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <iomanip>
 #include <numbers>
 #include <sstream>
@@ -124,6 +126,28 @@ inline BlendField with_own_bounds(BlendField blend, Random& random) {
     b = {random.between(0, 0.9), random.between(0.6, std::numbers::pi / 2)};
     if (random.between(0, 1) < 0.2) std::swap(b.least, b.most);
   }
+  return blend;
+}
+
+/// The least angle of a range that the tracer of blends takes.
+inline constexpr double least_traced_angle = -0.8;
+
+/// A third of the angles, or of the bounds of strands, below 0, down to the least that may be; the paper's projection.
+inline BlendField with_angles_below_zero(BlendField blend, Random& random) {
+  blend.projection = Projection::Paper;
+  const auto turn = [&](double& alpha) {
+    if (random.between(0, 1) < 0.33) alpha = random.between(least_traced_angle, 0);
+  };
+  for (auto* list : {&blend.points.alphas, &blend.segments.alphas, &blend.segments.alphas_to})
+    std::ranges::for_each(*list, turn);
+  if (!blend.points.alphas_to.empty()) blend.points.alphas_to = blend.points.alphas;
+  auto& bounds = blend.direction_bounds;
+  const bool are_equal = std::ranges::adjacent_find(bounds, std::ranges::not_equal_to{}) == bounds.end();
+  for (DirectionBounds& b : bounds) {
+    turn(b.least);
+    turn(b.most);
+  }
+  if (are_equal && !bounds.empty()) bounds.assign(bounds.size(), bounds.front());
   return blend;
 }
 

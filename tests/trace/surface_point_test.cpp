@@ -87,6 +87,7 @@ TEST(SurfacePoint, NormalIsThatOfTheExactFieldWhereTheAngleVaries) {
     expect_normals_of_varied_angles(random, random_stranded_scene(random, {n, 1, true}, 9), hits);
     const BlendField own = with_own_bounds(random_stranded_scene(random, {n, 1, true}, 9), random);
     expect_normals_of_varied_angles(random, own, hits);
+    expect_normals_of_varied_angles(random, with_angles_below_zero(own, random), hits);
   }
   EXPECT_GT(hits, 200);
 }

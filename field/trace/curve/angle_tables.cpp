@@ -19,8 +19,6 @@ namespace {
 // Of angles.
 constexpr double largest_step = 0.02;
 constexpr int fewest_steps = 8, fewest_entries = 512;
-// Where G is nearly 0 curves of small angles run along the axis of G, see iso_table.cpp.
-constexpr double least_turn = 0.3;
 // Curves end near by when it is at no more times the gradient of the reference curve at the iso-value than this.
 constexpr double farthest_end = 2;
 // Before the kink at the border of the cavity branch.
@@ -73,9 +71,10 @@ class Step {
   double sine = 0, cosine = 0;
   std::vector<Quadratic> value, slope;
   std::vector<double> below;
+  double crest_from = 0, crest_to = 0, rise = 0;
 
   Step(const Correction& like, double middle, double width, UpToGradient up_to) {
-    const double turn = std::max(middle, least_turn);
+    const double turn = turn_for(middle - 0.5 * width, middle);
     const auto at = [&](double s) { return Curve(like, middle + s * width, turn, up_to); };
     const Curve curves[3] = {at(-0.5), at(0), at(0.5)};
     sine = curves[1].turned.sine();
@@ -88,6 +87,7 @@ class Step {
     for (const double s : {-0.45, -0.35, -0.15, -0.05, 0.05, 0.15, 0.35, 0.45})
       probe(at(s), s, {0, 0.25, 0.5, 0.75}, first_entries);
     for (std::size_t k = 0; k < 3; ++k) leave_end_uncertain(curves[k].turned, 0.5 * (static_cast<double>(k) - 1));
+    if (middle - 0.5 * width < 0) find_crest(curves);
   }
 
  private:
@@ -168,6 +168,29 @@ class Step {
     }
   }
 
+  // By the entries, one more on both sides, and as far again as the crests of the three curves are apart; the slopes of
+  // the entries behind, and a tenth more for those between them.
+  void find_crest(const Curve (&curves)[3]) {
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double s = 0.5 * (static_cast<double>(k) - 1);
+      const auto line_of = [&](std::size_t i) { return curves[k].turned.line_of(place(static_cast<double>(i), s)); };
+      const auto x = [&](std::size_t i) { return line_of(i).x(value[i].at(s)); };
+      const auto y = [&](std::size_t i) { return line_of(i).y(value[i].at(s)); };
+      std::size_t crest = 0;
+      for (std::size_t i = 1; i + 1 < value.size() && x(i) > least_certain_field; ++i)
+        if (y(i) > y(crest)) crest = i;
+      least = std::min(least, x(crest + 1));
+      most = std::max(most, x(crest > 0 ? crest - 1 : 0));
+      for (std::size_t i = crest + 1; i < value.size() && x(i) > least_certain_field; ++i) {
+        const double dv = slope[i].at(s);
+        rise = std::max(rise, 1.1 * (sine + dv * cosine) / (dv * sine - cosine));
+      }
+    }
+    crest_from = std::max(0.0, 2 * least - most);
+    crest_to = 2 * most - least;
+  }
+
   // Curves fall in f towards their end, and those of other angles lie between them.
   void leave_end_uncertain(const TurnedCurve& curve, double s) {
     for (std::size_t i = value.size(); i-- > 0;) {
@@ -234,6 +257,9 @@ AngleCurves::AngleCurves(const Correction& correction, double least, double most
     of_steps_[6].push_back(static_cast<float>(step.sine));
     of_steps_[7].push_back(static_cast<float>(step.cosine));
     of_steps_[8].push_back(static_cast<float>(step.value.size() - 1));
+    of_steps_[9].push_back(static_cast<float>(step.crest_from));
+    of_steps_[10].push_back(static_cast<float>(step.crest_to));
+    of_steps_[11].push_back(static_cast<float>(step.rise));
   }
   constexpr std::size_t numbers = 32;
   for (auto& of_all : of_steps_) of_all.resize(std::max(of_all.size(), numbers));
@@ -249,6 +275,9 @@ AngleTables AngleCurves::tables() const {
           .sin_theta = of(6),
           .cos_theta = of(7),
           .last = of(8),
+          .crest_from = of(9),
+          .crest_to = of(10),
+          .rise = of(11),
           .stride = stride_,
           .count = count_};
 }

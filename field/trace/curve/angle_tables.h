@@ -20,14 +20,17 @@ struct AngleTables {
   const float *begin[3] = {}, *inverse_step[3] = {};
   const float *sin_theta = nullptr, *cos_theta = nullptr;
   const float* last = nullptr;  ///< the number of its last entry
-  int stride = 0, count = 0;    ///< entries from step to step; steps
+  /// Where over f the curves of a step are highest, between these two f; up to there they rise in f by at most so much.
+  /// All 0 for angles from 0 on, whose curves fall.
+  const float *crest_from = nullptr, *crest_to = nullptr, *rise = nullptr;
+  int stride = 0, count = 0;  ///< entries from step to step; steps
 };
 
 class AngleCurves {
  public:
   AngleCurves() = default;
-  /// 0 <= least < most, in radians; degree, cavity and projection are those of the correction. Up to a G, as
-  /// iso_table.h says.
+  /// least < most, in radians, as of a Correction; degree, cavity and projection are those of the correction. Up to a
+  /// G, as iso_table.h says.
   AngleCurves(const Correction&, double least, double most, UpToGradient);
   AngleCurves(AngleCurves&&) = default;  // tables stay where they are
   AngleCurves& operator=(AngleCurves&&) = default;
@@ -37,7 +40,7 @@ class AngleCurves {
 
  private:
   std::vector<float> entries_, slopes_;
-  std::vector<float> of_steps_[9];
+  std::vector<float> of_steps_[12];
   int stride_ = 0, count_ = 0;
 };
 

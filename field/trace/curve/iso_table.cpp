@@ -14,12 +14,6 @@ constexpr int fewest_entries = 2048, most_entries = 8192;
 // Without cavity some lines stay rough, where G is nearly 0 and the slope of C not bounded.
 constexpr int most_rough_steps = 12;
 
-// The turn for an angle near or below 0. Where G is nearly 0 the curve runs along the axis of G, and over x alone it
-// would begin as steeply as a root; below 0 it may rise in x by up to 6, so that its tangent may not turn far.
-constexpr double least_turn = 0.3, turn_below_zero = 0.1;
-
-double turn_of(double alpha) { return alpha < 0 ? turn_below_zero : std::max(alpha, least_turn); }
-
 double on_lines(const std::vector<float>& table, double place) {
   const auto i = static_cast<std::size_t>(place);
   return table[i] + (static_cast<double>(table[i + 1]) - table[i]) * (place - static_cast<double>(i));
@@ -33,14 +27,14 @@ int times_as_long(const TurnedCurve& curve, const Correction& correction) {
 }  // namespace
 
 IsoTable::IsoTable(const Correction& correction, double alpha, UpToGradient up_to)
-    : IsoTable(correction, {correction, critical_field_of(correction), turn_of(alpha), up_to}, alpha,
+    : IsoTable(correction, {correction, critical_field_of(correction), turn_for(alpha, alpha), up_to}, alpha,
                {fewest_entries, most_entries}) {}
 
 IsoTable::IsoTable(const Correction& correction, double alpha, int entry_count)
-    : IsoTable(
-          correction,
-          {correction, critical_field_of(correction), std::max(alpha, 0.0), UpToGradient{usual_gradient(correction)}},
-          alpha, {entry_count, entry_count}) {}
+    : IsoTable(correction,
+               {correction, critical_field_of(correction), alpha < 0 ? turn_for(alpha, alpha) : alpha,
+                UpToGradient{usual_gradient(correction)}},
+               alpha, {entry_count, entry_count}) {}
 
 IsoTable::IsoTable(const Correction& correction, const TurnedCurve& curve, double alpha, Entries entries)
     : critical_(critical_field_of(correction)), two_sided_(alpha < 0) {

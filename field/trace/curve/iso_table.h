@@ -24,7 +24,8 @@ class IsoTable {
   /// `alpha` in radians, here and below.
   /// Where the curve does not end before, it goes on up to the G asked for, with more entries for more of it.
   IsoTable(const Correction&, double alpha, UpToGradient);
-  /// An end of a range of angles, turned by alpha itself: some `entry_count` entries, so coarser than the one above.
+  /// An end of a range of angles, turned by alpha itself where that is not below 0: some `entry_count` entries, so
+  /// coarser than the one above.
   IsoTable(const Correction&, double alpha, int entry_count);
 
   /// Piecewise linear over u in [u_begin, u_begin + (size - 1) / inverse_step]; entries as float, sorted by u.

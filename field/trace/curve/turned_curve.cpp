@@ -75,6 +75,11 @@ double TurnedLine::first_v() const {
   return v;
 }
 
+double turn_for(double least, double middle) {
+  constexpr double least_turn = 0.3, turn_below_zero = 0.1;
+  return least < 0 ? turn_below_zero : std::max(middle, least_turn);
+}
+
 double usual_gradient(const Correction& correction) { return 6.0 * (correction.degree() - 1); }
 
 TurnedCurve::TurnedCurve(const Correction& correction, double critical_field, double turn, UpToGradient up_to)

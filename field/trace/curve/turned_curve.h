@@ -15,6 +15,11 @@ double critical_field_of(const Correction&);
 /// not come to more (largest_gradient.h).
 double usual_gradient(const Correction&);
 
+/// The turn for all angles from `least` on, about `middle`: that one, but no less than 0.3. Where G is nearly 0 and
+/// alpha near 0 or below, the curve runs along the axis of G, and over x alone it would begin as steeply as a root.
+/// Below 0, where it may rise in x by up to 6, its tangent may not turn far: 0.1.
+double turn_for(double least, double middle);
+
 /// The G up to which a curve is wanted.
 struct UpToGradient {
   double largest;

@@ -153,6 +153,17 @@ struct AnglePlace {
   F unless_beyond(F margin) const { return select(beyond(), all_lanes<F>(-infinity), margin); }
 };
 
+// Whether C > 1 for f from x_low to x_high and all G from y on, where angles may be below 0: at the crest of the curve
+// over f, or where the range comes nearest to it.
+template <class F>
+inline MaskOf<F> inside_below_crest(const AngleTables& tables, F share, F x_low, F x_high, F y) {
+  const AngleStep<F> step(tables, share);
+  const auto within = [&](const float* of) { return min_of(max_of(step.number(tables, of), x_low), x_high); };
+  const F from = within(tables.crest_from), to = within(tables.crest_to);
+  return AnglePlace<F>(tables, share, from, y - step.number(tables, tables.rise) * (to - from)).straight_margin() <
+         0.0F;
+}
+
 // Whether f is more than the reference curve has at this |G|: right of it C rises with the angle, left of it it falls
 // (iso_curve.h), so that over a range of angles C is largest, and least, at one end. Where float cannot tell the side,
 // C hardly depends on the angle.

@@ -32,7 +32,8 @@ struct PatchedAngle {
     return {c[0] + min_of(0.0F, end) - bend, c[0] + max_of(0.0F, end) + bend};
   }
 
-  // Marcher::margin(), nominal_margin_at() and nominally_inside() for all shares on [t, t + h].
+  // Marcher::margin(), nominal_margin_at() and nominally_inside() for all shares on [t, t + h], the last one for all f
+  // from x to x_high.
   F margin_within(const Sample& p, F x, F y, F h, Mask asked) const {
     constexpr float rounded = 1e-5F;
     const F raised_x = x * p.raise, raised_y = y * p.raise;
@@ -49,8 +50,11 @@ struct PatchedAngle {
     const Mask right = right_of_reference(x, y, block.degree);
     return AnglePlace<F>(block.tables, select(right, shares.high, shares.low), x, y).nominal_margin();
   }
-  Mask inside_within(const Sample& p, F x, F y, F h) const {
+  Mask inside_within(const Sample& p, F x, F x_high, F y, F h) const {
     const Range shares = shares_until(p, h, F{});
+    if (block.iso.two_sided)
+      return (x > block.iso.critical) | (inside_below_crest(block.tables, shares.low, x, x_high, y) &
+                                         inside_below_crest(block.tables, shares.high, x, x_high, y));
     const Mask right = right_of_reference(x, y, block.degree);
     return (x > block.iso.critical) |
            (AnglePlace<F>(block.tables, select(right, shares.low, shares.high), x, y).straight_margin() < 0.0F);

@@ -96,7 +96,8 @@ struct VariedAngle {
     return AnglePlace<float>(block.tables, upper ? shares.high : shares.low, x, y);
   }
 
-  // Marcher::margin(), nominal_margin_at() and nominally_inside() for all shares on [t, t + h].
+  // Marcher::margin(), nominal_margin_at() and nominally_inside() for all shares on [t, t + h], the last one for all f
+  // from x to x_high.
   float margin_within(const Sample& p, float x, float y, float h, bool) const {
     if (!p.sure) return nominal_within(p, x, y, h);
     return place_within(p, x * p.raise, y * p.raise, h, true).margin();
@@ -104,7 +105,11 @@ struct VariedAngle {
   float nominal_within(const Sample& p, float x, float y, float h) const {
     return place_within(p, x, y, h, true).nominal_margin();
   }
-  bool inside_within(const Sample& p, float x, float y, float h) const {
-    return x > block.iso.critical || place_within(p, x, y, h, false).straight_margin() < 0;
+  bool inside_within(const Sample& p, float x, float x_high, float y, float h) const {
+    if (x > block.iso.critical) return true;
+    if (!block.iso.two_sided) return place_within(p, x, y, h, false).straight_margin() < 0;
+    const ShareRange shares = shares_until(p, h);
+    return inside_below_crest(block.tables, shares.low, x, x_high, y) &&
+           inside_below_crest(block.tables, shares.high, x, x_high, y);
   }
 };

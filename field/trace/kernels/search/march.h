@@ -12,12 +12,20 @@ struct Marcher : Sampler<Rule, F> {
   using typename Place::Mask;
   using typename Place::Sample;
 
-  // Positive where the field with these sums is below 1: surely, or, around a sample that is not sure, as summed.
-  F margin(const Sample& p, F x, F y, Mask asked) const {
+  // Positive where the field with these sums is below 1 on [t, t + h]: surely, or, around a sample that is not sure, as
+  // summed.
+  F margin(const Sample& p, F x, F y, F h, Mask asked) const {
+    if constexpr (Rule != Angle::One) return angle().margin_within(p, x, y, h, asked);
     F found = margin_at(block.iso, x * p.raise, y * p.raise);
     const Mask as_summed = asked & !p.sure;
     if (any(as_summed)) found = select(as_summed, nominal_margin_at(block.iso, x, y), found);
     return found;
+  }
+
+  // The same to within rounding.
+  F nominal_margin(const Sample& p, F x, F y, F h) const {
+    if constexpr (Rule != Angle::One) return angle().nominal_within(p, x, y, h);
+    return nominal_margin_at(block.iso, x, y);
   }
 
   // sum_{j=1..m} (m+1-j) a^j for m = degree (field) and degree + 1 (gradient): psi_1^m(q) / q^2 with a = 1/(1-q),
@@ -85,12 +93,10 @@ struct Marcher : Sampler<Rule, F> {
     const Bend bend = bend_until(p, h, q);
     const F x_end = p.s.f + p.s.df * h + bend.field;
     const F y_up = max_of(p.y, turned_length(p, h) + bend.gradient + level.g_error());
-    if constexpr (Rule != Angle::One)
-      return near & (angle().margin_within(p, max_of(p.s.f, x_end), y_up, h, near) > 0.0F);
-    const Mask below = near & (margin(p, max_of(p.s.f, x_end), y_up, near) > 0.0F);
+    const Mask below = near & (margin(p, max_of(p.s.f, x_end), y_up, h, near) > 0.0F);
     if (!block.iso.two_sided || !any(below)) return below;
     const F x_low = min_of(p.s.f, p.s.f + p.s.df * h - bend.field) * (1 - rounding) - 2.0F * level.f_error();
-    return below & (margin(p, max_of(0.0F, x_low), y_up, below) > 0.0F);
+    return below & (margin(p, max_of(0.0F, x_low), y_up, h, below) > 0.0F);
   }
 
   // Whether the field is above 1 at t + h, by the same bounds and errors from below. For alpha < 0 the curve rises,
@@ -103,7 +109,7 @@ struct Marcher : Sampler<Rule, F> {
     F x = x_high - 2 * bend.field - 2.0F * level.f_error();
     const Mask known = (q < 0.5F) & (x > 0.0F) & (y > 0.0F);
     if (!any(known)) return known;
-    if constexpr (Rule != Angle::One) return known & angle().inside_within(p, x, y, h);
+    if constexpr (Rule != Angle::One) return known & angle().inside_within(p, x, x_high, y, h);
     if (block.iso.two_sided) x = max_of(x, min_of(x_high, block.iso.peak_x));
     return known & (curve_at(block.iso, turned_u(block.iso, x, y)).value < turned_v(block.iso, x, y));
   }
@@ -118,9 +124,10 @@ struct Marcher : Sampler<Rule, F> {
     for (int i = 0; i < 3; ++i) along += p.s.g[i] * (p.s.g[i] + p.s.dg[i] * h);
     const float y_end = along / max_of(p.y, 1e-12F) - bend.gradient;
     const float y = max_of(0, min_of(p.y, y_end)), x_end = p.s.f + p.s.df * h;
+    const float x_high = max_of(p.s.f, x_end + bend.field);
     float x = max_of(0, min_of(p.s.f, x_end - bend.field));
-    if constexpr (Rule != Angle::One) return angle().inside_within(p, x, y, h);
-    if (block.iso.two_sided) x = max_of(x, min_of(max_of(p.s.f, x_end + bend.field), block.iso.peak_x));
+    if constexpr (Rule != Angle::One) return angle().inside_within(p, x, x_high, y, h);
+    if (block.iso.two_sided) x = max_of(x, min_of(x_high, block.iso.peak_x));
     return nominally_inside(block.iso, x, y);
   }
 
@@ -129,9 +136,8 @@ struct Marcher : Sampler<Rule, F> {
     if (!(q < 0.5F)) return false;
     const Bend bend = bend_until(p, h, q);
     const float y = turned_length(p, h) + bend.gradient, x = p.s.f + p.s.df * h;
-    if constexpr (Rule != Angle::One) return angle().nominal_within(p, x + bend.field, y, h) > 0.0F;
-    return nominal_margin_at(block.iso, x + bend.field, y) > 0.0F &&
-           (!block.iso.two_sided || nominal_margin_at(block.iso, max_of(0, x - bend.field), y) > 0.0F);
+    return nominal_margin(p, x + bend.field, y, h) > 0 &&
+           (!block.iso.two_sided || nominal_margin(p, max_of(0, x - bend.field), y, h) > 0);
   }
 
   // Deep inside no gradient can bring the field below 1, and f falls at most as if all of it came from the nearest

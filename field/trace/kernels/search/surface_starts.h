@@ -120,10 +120,13 @@ class SurfaceStart {
     for (int k = 0; k < 3; ++k) g[k] = g_[k] + bent_[k] * step;
     const F y = (root_of(dot3(g, g)) + g_bend_ * step * step + g_error_) * raise_;
     const F x = (at + bend + f_error_) * raise_;
-    if constexpr (Varied) return margin_of_shares(step, x, y);
-    const F right = margin_at(rule_.iso, x, y);
+    const F right = margin(step, x, y);
     if (!rule_.iso.two_sided) return right;
-    return min_of(right, margin_at(rule_.iso, max_of((at - bend - f_error_) / raise_, 0.0F), y));
+    return min_of(right, margin(step, max_of((at - bend - f_error_) / raise_, 0.0F), y));
+  }
+  F margin(F step, F x, F y) const {
+    if constexpr (Varied) return margin_of_shares(step, x, y);
+    else return margin_at(rule_.iso, x, y);
   }
 
   // For all shares that alpha may have on the step: C is largest at one end of them, see angle_place.h.
