@@ -80,7 +80,7 @@ struct NamedTables {
   std::string name;
 };
 
-// Of wide and narrow ranges. Some take a second.
+// Of wide and narrow ranges. Some take a quarter of a second.
 const std::vector<NamedTables>& all_tables() {
   struct Range {
     double least, most;
@@ -160,7 +160,7 @@ std::vector<std::pair<double, double>> places_on(const TurnedCurve& curve, doubl
   std::vector<std::pair<double, double>> places;
   for (int i = 0; i <= count; ++i) {
     const TurnedLine line = curve.line_of(std::lerp(curve.begin(), curve.end(), static_cast<double>(i) / count));
-    const double v = curve.value(line.u, 0, 0);
+    const double v = curve.value(line.u);
     if (line.x(v) < least_field) break;
     places.emplace_back(line.x(v), line.y(v));
   }

@@ -53,15 +53,6 @@ struct Curve {
         turned(correction, critical_field_of(correction), turn, up_to) {}
   Curve(const Curve&) = delete;
   Curve& operator=(const Curve&) = delete;
-
-  // V', from the partials: along the curve C_x dx + C_y dy = 0.
-  std::optional<double> slope(double u, double v) const {
-    const TurnedLine line = turned.line_of(u);
-    const auto c = correction.partials(line.x(v), line.y(v));
-    const double slope =
-        (turned.cosine() * c.df - turned.sine() * c.dG) / (turned.sine() * c.df + turned.cosine() * c.dG);
-    return std::isfinite(slope) ? std::optional(slope) : std::nullopt;
-  }
 };
 
 // One step of the range.
@@ -70,7 +61,7 @@ class Step {
   Quadratic begin, inverse_step;
   double sine = 0, cosine = 0;
   std::vector<Quadratic> value, slope;
-  std::vector<double> below;
+  std::vector<double> below, growth;  // growth: dC/dv at least; 0 where it is not known
   double crest_from = 0, crest_to = 0, rise = 0;
 
   Step(const Correction& like, double middle, double width, UpToGradient up_to) {
@@ -135,37 +126,38 @@ class Step {
   }
 
   void find_values(const Curve (&curves)[3]) {
-    std::vector<double> found[3], slopes[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double s = 0.5 * (static_cast<double>(k) - 1), first = curves[k].turned.begin();
-      const double first_value = curves[k].turned.value(first, 0, 0),
-                   first_slope = curves[k].slope(first, first_value).value_or(0);
-      int known = 0;
-      for (std::size_t i = 0; i < value.size(); ++i) {
-        const double u = place(static_cast<double>(i), s);
-        std::vector<double>& v = found[k];
-        if (u < first) {  // no place is there
-          v.push_back(first_value + first_slope * (u - first));
-          slopes[k].push_back(first_slope);
-          continue;
-        }
-        if (u > curves[k].turned.end() && curves[k].turned.ends_at_axis()) {
-          v.push_back(v[i - 1] + slopes[k][i - 1] / inverse_step.at(s));
-          slopes[k].push_back(slopes[k][i - 1]);
-          continue;
-        }
-        // By the parabola through the last three.
-        const bool guessed = ++known > 4;
-        const double guess = guessed ? 3 * (v[i - 1] - v[i - 2]) + v[i - 3] : 0;
-        v.push_back(curves[k].turned.value(u, guess, guessed ? 1e-4 / inverse_step.at(s) : 0));
-        const double before = i > 0 ? (v[i] - v[i - 1]) * inverse_step.at(s) : 0;
-        slopes[k].push_back(curves[k].slope(u, v[i]).value_or(before));
+    std::vector<TurnedCurve::Place> places[3];
+    for (std::size_t k = 0; k < 3; ++k) places[k] = places_on(curves[k].turned, 0.5 * (static_cast<double>(k) - 1));
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const TurnedCurve::Place &a = places[0][i], &b = places[1][i], &c = places[2][i];
+      value[i] = {a.v, b.v, c.v};
+      slope.emplace_back(a.slope, b.slope, c.slope);
+      growth.push_back(std::min({a.growth, b.growth, c.growth}));
+    }
+  }
+
+  // One for each entry: before the curve begins, where no place is, and behind its end along its tangent, with no
+  // growth.
+  std::vector<TurnedCurve::Place> places_on(const TurnedCurve& curve, double s) const {
+    const double first = curve.begin(), length = 1 / inverse_step.at(s);
+    TurnedCurve::Place at_begin = curve.place(first, curve.value(first));
+    if (!std::isfinite(at_begin.slope)) at_begin.slope = 0;
+    std::vector<TurnedCurve::Place> places;
+    int known = 0;
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const double u = place(static_cast<double>(i), s);
+      if (u < first) {
+        places.push_back({at_begin.v + at_begin.slope * (u - first), at_begin.slope, 0});
+      } else if (u > curve.end() && curve.ends_at_axis()) {
+        places.push_back({places[i - 1].v + places[i - 1].slope * length, places[i - 1].slope, 0});
+      } else {
+        const bool guessed = ++known > 2;
+        places.push_back(curve.place(u, guessed ? value_behind(places[i - 2], places[i - 1], length) : curve.value(u)));
+        TurnedCurve::Place& last = places.back();
+        if (!std::isfinite(last.slope)) last.slope = i > 0 ? (last.v - places[i - 1].v) / length : 0;
       }
     }
-    for (std::size_t i = 0; i < value.size(); ++i) {
-      value[i] = {found[0][i], found[1][i], found[2][i]};
-      slope.emplace_back(slopes[0][i], slopes[1][i], slopes[2][i]);
-    }
+    return places;
   }
 
   // By the entries, one more on both sides, and as far again as the crests of the three curves are apart; the slopes of
@@ -205,19 +197,16 @@ class Step {
   // there.
   void probe(const Curve& curve, double s, std::initializer_list<double> places,
              std::size_t most = std::numeric_limits<std::size_t>::max()) {
-    double known = 1e-6;
     for (std::size_t i = 0; i + 1 < std::min(value.size(), most); ++i) {
       const double from = place(static_cast<double>(i), s),
                    begin_at = (curve.turned.begin() - from) * inverse_step.at(s);
       if (begin_at > 1) continue;
-      double low = 0, largest = 0;
+      double low = 0;
       for (const double at : places) {
         const double fraction = std::max(at, begin_at), line = std::lerp(value[i].at(s), value[i + 1].at(s), fraction);
-        const double error = line - curve.turned.value(from + fraction / inverse_step.at(s), line, known);
-        low = std::max(low, 2 * error);
-        largest = std::max(largest, std::fabs(error));
+        const double u = from + fraction / inverse_step.at(s);
+        low = std::max(low, 2 * curve.turned.height(u, line, {growth[i], growth[i + 1]}));
       }
-      known = 4 * largest + 1e-9;
       for (const std::size_t j : {i, i + 1}) below[j] = std::max(below[j], low);
     }
   }

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "field/blend/correction/correction.h"
-
 namespace marrow {
 namespace {
 
@@ -32,26 +30,21 @@ Steps steps_over(double begin, double end, int entry_count, std::optional<double
   return {length, 1 + static_cast<int>(std::ceil((end - begin) / length))};
 }
 
-void find_values(const TurnedCurve& curve, CurveEntries& e) {
+// Returns dC/dv at each entry.
+std::vector<double> find_values(const TurnedCurve& curve, CurveEntries& e) {
+  std::vector<TurnedCurve::Place> places;
   for (std::size_t i = 0; i < e.value.size(); ++i) {
-    // By the parabola through the last three.
-    const double guess = i < 3 ? 0 : 3 * (e.value[i - 1] - e.value[i - 2]) + e.value[i - 3];
-    const double known = i < 3 ? 0 : 1e-4 * e.step;
-    e.value[i] = curve.value(curve.begin() + static_cast<double>(i) * e.step, guess, known);
+    const double u = curve.begin() + static_cast<double>(i) * e.step;
+    const bool guessed = i > 1 && std::isfinite(places[i - 1].slope) && std::isfinite(places[i - 2].slope);
+    places.push_back(curve.place(u, guessed ? value_behind(places[i - 2], places[i - 1], e.step) : curve.value(u)));
+    e.value[i] = places[i].v;
   }
-}
-
-// dV/du from the partials: along the curve C_x dx + C_y dy = 0. Returns dC/dv at each entry.
-std::vector<double> find_slopes(const TurnedCurve& curve, const Correction& correction, CurveEntries& e) {
-  std::vector<double> growth(e.value.size());
-  e.slope.resize(e.value.size());
-  for (std::size_t i = 0; i < e.value.size(); ++i) {
-    const TurnedLine line = curve.line_of(curve.begin() + static_cast<double>(i) * e.step);
-    const auto c = correction.partials(line.x(e.value[i]), line.y(e.value[i]));
-    growth[i] = curve.sine() * c.df + curve.cosine() * c.dG;
-    const double slope = (curve.cosine() * c.df - curve.sine() * c.dG) / growth[i];
-    const std::size_t next = std::min<std::size_t>(i + 1, e.value.size() - 1);
-    e.slope[i] = std::isfinite(slope) ? slope : (e.value[next] - e.value[next - 1]) / e.step;
+  std::vector<double> growth;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::size_t next = std::min<std::size_t>(i + 1, places.size() - 1);
+    const bool told = std::isfinite(places[i].slope);
+    e.slope.push_back(told ? places[i].slope : (e.value[next] - e.value[next - 1]) / e.step);
+    growth.push_back(places[i].growth);
   }
   return growth;
 }
@@ -63,18 +56,16 @@ void find_errors(const TurnedCurve& curve, const std::vector<double>& growth, Cu
   constexpr double least_field = 0.3;  // nearer to x = 0 than this no field has the large y of the curve
   e.below.assign(e.value.size(), 0);
   e.above.assign(e.value.size(), 0);
-  double known = 1e-6;
   for (std::size_t i = 0; i + 1 < e.value.size(); ++i) {
     double low = 0, high = 0;
     for (int k = 1; k <= probes_per_step; ++k) {
       const double fraction = static_cast<double>(k) / (probes_per_step + 1);
       const double line = e.value[i] + (e.value[i + 1] - e.value[i]) * fraction;
-      const double error =
-          curve.value(curve.begin() + (static_cast<double>(i) + fraction) * e.step, line, known) - line;
+      const double u = curve.begin() + (static_cast<double>(i) + fraction) * e.step;
+      const double error = -curve.height(u, line, {growth[i], growth[i + 1]});
       low = std::min(low, 2 * error);
       high = std::max(high, 2 * error);
     }
-    known = 2 * std::max(high, -low) + 1e-9;
     for (const std::size_t j : {i, i + 1}) {
       e.below[j] = std::min(e.below[j], low);
       e.above[j] = std::max(e.above[j], high);
@@ -86,13 +77,11 @@ void find_errors(const TurnedCurve& curve, const std::vector<double>& growth, Cu
 
 }  // namespace
 
-CurveEntries curve_entries(const TurnedCurve& curve, const Correction& correction, int entry_count,
-                           std::optional<double> kink) {
+CurveEntries curve_entries(const TurnedCurve& curve, int entry_count, std::optional<double> kink) {
   const Steps steps = steps_over(curve.begin(), curve.end(), entry_count, kink);
   CurveEntries e{.step = steps.length};
   e.value.resize(static_cast<std::size_t>(steps.entry_count));
-  find_values(curve, e);
-  find_errors(curve, find_slopes(curve, correction, e), e);
+  find_errors(curve, find_values(curve, e), e);
   return e;
 }
 

@@ -18,6 +18,6 @@ struct CurveEntries {
 };
 
 /// At least `entry_count`; with a kink the steps are so much shorter that an entry stands there.
-CurveEntries curve_entries(const TurnedCurve&, const Correction&, int entry_count, std::optional<double> kink);
+CurveEntries curve_entries(const TurnedCurve&, int entry_count, std::optional<double> kink);
 
 }  // namespace marrow

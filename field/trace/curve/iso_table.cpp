@@ -46,7 +46,7 @@ IsoTable::IsoTable(const Correction& correction, const TurnedCurve& curve, doubl
   const auto kink = curve.kink();
   CurveEntries e;
   for (int count = entries.fewest * times; count <= entries.most * times; count *= 2) {
-    e = curve_entries(curve, correction, count, kink);
+    e = curve_entries(curve, count, kink);
     if (e.rough_steps <= most_rough_steps) break;
   }
   step_ = e.step;

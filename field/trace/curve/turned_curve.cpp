@@ -98,10 +98,11 @@ TurnedCurve::TurnedCurve(const Correction& correction, double critical_field, do
 }
 
 std::optional<double> TurnedCurve::kink() const {
+  double v = root(begin_);  // of the last place, from where the next one is found
   return border(
       [&](double u) {
         const TurnedLine line = line_of(u);
-        const double v = root(u);
+        v = place(u, v).v;
         return correction_.in_cavity_branch(line.x(v), line.y(v));
       },
       begin_, end_);
@@ -109,16 +110,48 @@ std::optional<double> TurnedCurve::kink() const {
 
 // On the axis x = 0 all fields are above it, as they should be: the curve itself comes in like a high root, and no
 // slope of it would do.
-double TurnedCurve::value(double u, double guess, double known) const {
-  if (ends_at_axis_ && u >= end_) return u * cos_ / sin_;
-  const double low = std::max(line_of(u).first_v(), guess - known), high = guess + known;
-  if (!(low < high) || !(excess(u, low) < 0) || !(excess(u, high) >= 0)) return root(u);
-  return rising_root([&](double v) { return excess(u, v); }, low, high);
+double TurnedCurve::value(double u) const { return ends_at_axis_ && u >= end_ ? u * cos_ / sin_ : root(u); }
+
+// A step that is no longer than settled leaves an error of its square.
+TurnedCurve::Place TurnedCurve::place(double u, double guess) const {
+  constexpr double settled = 1e-7;
+  constexpr int most_steps = 6;
+  const double first = line_of(u).first_v();
+  double v = std::max(guess, first);
+  for (int k = 0; k < most_steps && !(ends_at_axis_ && u >= end_); ++k) {
+    const CorrectionPartials c = partials(u, v);
+    Place here = told_by(c, v);
+    if (!(here.growth > 0 && std::isfinite(here.growth))) break;
+    here.v = std::max(first, v - (c.value - 1) / here.growth);
+    if (std::fabs(here.v - v) <= settled * (1 + std::fabs(v))) return here;
+    v = here.v;
+  }
+  v = value(u);
+  return told_by(partials(u, v), v);
+}
+
+double TurnedCurve::height(double u, double v, const std::array<double, 2>& growth) const {
+  constexpr double is_near = 1e-3, alike = 4.0 / 3;
+  const auto [least, most] = std::minmax(growth[0], growth[1]);
+  if (!(least > 0 && most < alike * least)) return v - value(u);
+  const double above = excess(u, v);
+  return std::fabs(above) < is_near ? above / least : v - value(u);
 }
 
 double TurnedCurve::excess(double u, double v) const {
   const TurnedLine line = line_of(u);
   return correction_.value(line.x(v), line.y(v)) - 1;
+}
+
+CorrectionPartials TurnedCurve::partials(double u, double v) const {
+  const TurnedLine line = line_of(u);
+  return correction_.partials(line.x(v), line.y(v));
+}
+
+// Along the curve C_x dx + C_y dy = 0.
+TurnedCurve::Place TurnedCurve::told_by(const CorrectionPartials& c, double v) const {
+  const double growth = sin_ * c.df + cos_ * c.dG;
+  return {v, (cos_ * c.df - sin_ * c.dG) / growth, growth};
 }
 
 double TurnedCurve::root(double u) const {

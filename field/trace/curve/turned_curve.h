@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 namespace marrow {
 
 class Correction;
+struct CorrectionPartials;
 
 /// The f with C(f, 0) = 1; infinite when there is none.
 double critical_field_of(const Correction&);
@@ -52,17 +54,34 @@ class TurnedCurve {
   bool ends_at_axis() const { return ends_at_axis_; }
   /// The u where it comes to the border of the cavity branch, if it does.
   std::optional<double> kink() const;
-  /// V(u), sooner when it is within `known` of a guess. From the axis x = 0 on it is that axis.
-  double value(double u, double guess, double known) const;
+  /// V(u), from the axis x = 0 on that axis.
+  double value(double u) const;
+  struct Place {
+    double v;
+    double slope;   ///< V'; not finite where partial derivatives do not tell it
+    double growth;  ///< dC/dv
+  };
+  /// The same, and how curve and operator go on there: by Newton's steps from a guess, to a rounding.
+  Place place(double u, double guess) const;
+  /// How far v is above the curve, or below where negative, by how C grows along v at two places around it; by V(u)
+  /// where these differ by more than a third or C is not near 1.
+  double height(double u, double v, const std::array<double, 2>& growth) const;
   TurnedLine line_of(double u) const { return {u, sin_, cos_}; }
 
  private:
   double excess(double u, double v) const;
+  CorrectionPartials partials(double u, double v) const;
+  Place told_by(const CorrectionPartials&, double v) const;
   double root(double u) const;
 
   const Correction& correction_;
   double sin_, cos_, begin_, end_;
   bool ends_at_axis_;
 };
+
+/// The guess of V one step behind two places that are as far apart: by the cubic through both and their slopes.
+inline double value_behind(const TurnedCurve::Place& before, const TurnedCurve::Place& last, double step) {
+  return 5 * before.v - 4 * last.v + step * (2 * before.slope + 4 * last.slope);
+}
 
 }  // namespace marrow
