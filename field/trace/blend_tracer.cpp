@@ -35,6 +35,7 @@ std::size_t BlendTracer::tile_count() const { return state_->tree.tile_count(); 
 Box3 BlendTracer::tile_box(std::size_t tile) const { return state_->tree.tile_box(tile); }
 const Box3& BlendTracer::bounds() const { return state_->bounds; }
 const BlendField& BlendTracer::field() const { return state_->field; }
+MaterialId BlendTracer::material_at(const Vec3d& p) const { return state_->materials.at(p); }
 
 const Block& BlendTracer::block(const Tile& tile, int slot) const {
   return tile.block(slot).get(

@@ -174,6 +174,8 @@ class BlendTracer {
   std::optional<Vec3d> inside_beside(const SurfaceQuery& hit, const UnitVec3& normal) const;
 
   const BlendField& field() const;
+  /// Of strongest_material() of the blend, by a few of its sources; invalid: the object's own.
+  MaterialId material_at(const Vec3d&) const;
   /// Where the corrected field is clearly above or below 1 (SideBound). For large blends much sooner than the field.
   Side clear_side(const Vec3d& p) const;
   Side clear_side(const Box3&) const;

@@ -15,6 +15,7 @@
 #include "field/trace/cells/strands.h"
 #include "field/trace/curve/largest_gradient.h"
 #include "field/trace/curve/turned_curve.h"
+#include "field/trace/material_search.h"
 #include "field/trace/shares/angle_field.h"
 
 namespace marrow {
@@ -52,6 +53,7 @@ struct BlendTracer::State {
   IsoCurve iso;
   PieceCutter cutter;
   SourceTree sources, angle_sources;  // the second one where skeletons have an angle each
+  MaterialSearch materials;
   const BlockKernels& kernels;
   std::optional<Strands> strands;  // where their directions give the angle
   NearFar coarse, fine;
@@ -71,6 +73,7 @@ struct BlendTracer::State {
         angle_sources(
             range && field.alpha_per_skeleton ? angle_pieces(field, *range, cutter.cut(field)) : std::vector<Piece>{},
             field.degree),
+        materials(field, sources),
         kernels(k),
         coarse(field.degree, budget_of(coarse_tolerance, field.degree), kernels,
                options.coarse_far_degree.value_or(coarse_far_degree_for(sources.pieces().size()))),

@@ -227,7 +227,7 @@ void FieldSolid::describe(std::span<const HitToDescribe> hits) const {
     hit.around = around;
     hit.normal = in_world_ ? normal : normalize(local_from_world_.transposed(normal));
     hit.outside = in_world_ ? outside : world_from_local_.point(outside);
-    const MaterialId own = strongest_material(tracer_->field(), asked[i].position);
+    const MaterialId own = tracer_->material_at(asked[i].position);
     hit.material = own.valid() ? own : material_;
   }
 }

@@ -51,6 +51,7 @@ class SourceTree {
   std::span<const Piece> pieces() const { return pieces_; }
   const Piece& piece(std::uint32_t i) const { return pieces_[i]; }
   const SourceNode& node(std::uint32_t i) const { return nodes_[i]; }
+  std::span<const SourceNode> nodes() const { return nodes_; }
   /// Of all curves and of all points, as far as there are any.
   std::span<const SourceRef> roots() const { return roots_; }
   std::size_t bytes() const { return pieces_.capacity() * sizeof(Piece) + nodes_.capacity() * sizeof(SourceNode); }
