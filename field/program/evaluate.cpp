@@ -58,16 +58,26 @@ BlendSample evaluate_part(const PlacedBlend& part, const Vec3d& p) {
   return s;
 }
 
-FieldTree tree_of(const PlacedBlend& part) {
+namespace {
+
+FieldTree tree_of(const PlacedBlend& part, std::shared_ptr<const BlendField> blend) {
   auto nodes = std::make_shared<std::vector<TreeNode>>();
   nodes->push_back(CrispUnion{});
-  nodes->push_back(BlendLeaf{std::make_shared<BlendField>(part.blend)});
+  nodes->push_back(BlendLeaf{std::move(blend)});
   std::vector<FieldTree::Record> records{
       {.node = 1, .first_child = 0, .child_count = 0, .material = {}, .support = {}}};
   if (part.is_in_world()) return FieldTree(std::move(nodes), std::move(records), {});
   nodes->push_back(AffineWarp{part.world_from_local, part.local_from_world});
   records.push_back({.node = 2, .first_child = 0, .child_count = 1, .material = {}, .support = {}});
   return FieldTree(std::move(nodes), std::move(records), {0});
+}
+
+}  // namespace
+
+FieldTree tree_of(const PlacedBlend& part) { return tree_of(part, std::make_shared<const BlendField>(part.blend)); }
+
+FieldTree tree_referring_to(const PlacedBlend& part) {
+  return tree_of(part, std::shared_ptr<const BlendField>(std::shared_ptr<void>{}, &part.blend));
 }
 
 FieldSample evaluate(const FieldProgram& program, const Vec3d& p) {

@@ -79,5 +79,7 @@ BlendSample evaluate_part(const PlacedBlend&, const Vec3d& p);
 
 /// A blend as a tree of its own, in world coordinates.
 FieldTree tree_of(const PlacedBlend&);
+/// The same without a copy of the blend, which must outlive it.
+FieldTree tree_referring_to(const PlacedBlend&);
 
 }  // namespace marrow

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -69,14 +70,60 @@ Vec3d pixel_center(const SliceImage& image, int x, int y) {
   return p;
 }
 
-void sample_rows(const FieldFunction& field, SliceImage& image, const std::atomic<bool>* interrupted) {
-  const auto is_over = [&] { return interrupted != nullptr && interrupted->load(std::memory_order_relaxed); };
-  tbb::parallel_for(tbb::blocked_range<int>(0, image.height), [&](const tbb::blocked_range<int>& rows) {
-    for (int y = rows.begin(); y < rows.end(); ++y)
-      for (int x = 0; x < image.width && !is_over(); ++x)
-        image.samples[index(y) * index(image.width) + index(x)] = field(pixel_center(image, x, y));
-  });
+// Some pixels of an image.
+struct Part {
+  int x0, y0, x1, y1;  // the last two are beyond it
+
+  int width() const { return x1 - x0; }
+  int height() const { return y1 - y0; }
+  // Halves along each side that is longer than a square of pixels.
+  std::vector<Part> divided(int square) const {
+    const int xm = width() > square ? x0 + width() / 2 : x1, ym = height() > square ? y0 + height() / 2 : y1;
+    std::vector<Part> parts;
+    for (const auto& [top, bottom] : {std::pair{y0, ym}, std::pair{ym, y1}})
+      for (const auto& [left, right] : {std::pair{x0, xm}, std::pair{xm, x1}})
+        if (left < right && top < bottom) parts.push_back({left, top, right, bottom});
+    return parts;
+  }
+};
+
+Box3 box_of(const SliceImage& image, const Part& part) {
+  Box3 box;
+  box.include(pixel_center(image, part.x0, part.y0));
+  box.include(pixel_center(image, part.x1 - 1, part.y1 - 1));
+  return box;
 }
+
+// From part to part, each with the field in a box around its pixels: the same numbers on any number of threads.
+class Sampler {
+ public:
+  Sampler(SliceImage& image, const std::atomic<bool>* interrupted) : image_(image), interrupted_(interrupted) {}
+
+  void sample(const SliceField& field, const Part& part) const {
+    const std::vector<Part> parts = part.divided(square);
+    if (parts.size() == 1) return sample_pixels(field, part);
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+      if (is_over()) return;
+      if (field.within) sample(field.within(box_of(image_, parts[i])), parts[i]);
+      else sample(field, parts[i]);
+    });
+  }
+
+ private:
+  // Of pixels that go on with one field: smaller ones gain less than it takes to make theirs.
+  static constexpr int square = 16;
+
+  bool is_over() const { return interrupted_ != nullptr && interrupted_->load(std::memory_order_relaxed); }
+
+  void sample_pixels(const SliceField& field, const Part& part) const {
+    for (int y = part.y0; y < part.y1; ++y)
+      for (int x = part.x0; x < part.x1 && !is_over(); ++x)
+        image_.samples[index(y) * index(image_.width) + index(x)] = field.at(pixel_center(image_, x, y));
+  }
+
+  SliceImage& image_;
+  const std::atomic<bool>* interrupted_;
+};
 
 Channel channel(const std::string& name, const SliceImage& image, const std::function<double(const SliceSample&)>& of) {
   std::vector<float> values(image.samples.size());
@@ -107,10 +154,10 @@ std::array<int, 2> slice_axes(int axis) {
   return axes[index(axis)];
 }
 
-Result<SliceImage> slice(const FieldFunction& field, double iso, const Box3& bounds, const SliceRequest& request) {
+Result<SliceImage> slice(const SliceField& field, double iso, const Box3& bounds, const SliceRequest& request) {
   Result<SliceImage> image = blank(iso, bounds, request);
   if (!image) return image;
-  const auto sample = [&] { sample_rows(field, *image, request.interrupted); };
+  const auto sample = [&] { Sampler(*image, request.interrupted).sample(field, {0, 0, image->width, image->height}); };
   if (request.threads > 0) tbb::task_arena(request.threads).execute(sample);
   else sample();
   return image;

@@ -22,8 +22,12 @@ struct SliceSample {
   Vec3d gradient;  ///< per scene unit
 };
 
-/// Called by several threads at once.
-using FieldFunction = std::function<SliceSample(const Vec3d&)>;
+/// What is sampled; called by several threads at once.
+struct SliceField {
+  std::function<SliceSample(const Vec3d&)> at;
+  /// The same field in a box, where samples take less time; null: they would not.
+  std::function<SliceField(const Box3&)> within{};
+};
 
 /// A rectangle of the plane, in scene units; u to the right, v up (see slice_axes).
 struct SliceWindow {
@@ -67,7 +71,7 @@ struct SliceImage {
 };
 
 /// Errors: an axis other than 0..2, an empty window or one that is not finite, more than 2^26 pixels.
-Result<SliceImage> slice(const FieldFunction&, double iso, const Box3& bounds, const SliceRequest&);
+Result<SliceImage> slice(const SliceField&, double iso, const Box3& bounds, const SliceRequest&);
 
 /// Range of colours that shows the surface and both its sides: 0 (or the least value, if below) to twice the iso-value,
 /// because the fields of skeletons grow without bound at the skeleton and what a reader looks for is where f = iso.

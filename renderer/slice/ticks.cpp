@@ -47,8 +47,17 @@ std::vector<double> ticks(double low, double high, int most) {
 std::string label(double value, double step) {
   const double magnitude = std::fabs(value);
   if (magnitude < 1e-6 * step) return "0";
-  const int digits = std::clamp(decade(magnitude).exponent - decade(step).exponent + 2, 1, 15);
-  std::string text = fmt::format("{:.{}g}", magnitude, digits);
+  const int of_step = decade(step).exponent;
+  std::string text;
+  if (magnitude >= 1e-4 && magnitude < 1e6) {
+    text = fmt::format("{:.{}f}", magnitude, std::clamp(1 - of_step, 0, 15));
+    if (text.find('.') != std::string::npos) {
+      text.resize(text.find_last_not_of('0') + 1);
+      if (text.back() == '.') text.pop_back();
+    }
+  } else {
+    text = fmt::format("{:.{}g}", magnitude, std::clamp(decade(magnitude).exponent - of_step + 2, 1, 15));
+  }
   return value < 0 ? "\u2212" + text : text;
 }
 

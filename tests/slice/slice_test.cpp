@@ -22,7 +22,7 @@ const Box3 unit_box{{-1, -1, -1}, {1, 1, 1}};
 SliceImage slice_ball(int width, const SliceRequest& request = {}) {
   SliceRequest r = request;
   r.width = width;
-  const auto image = slice(ball, 1, unit_box, r);
+  const auto image = slice({ball}, 1, unit_box, r);
   if (!image) throw std::runtime_error(image.why().front().message);
   return *image;
 }
@@ -36,14 +36,41 @@ TEST(Slice, PixelCentersOfEachPlaneWithVUp) {
   for (int axis = 0; axis < 3; ++axis) {
     SliceRequest request{.axis = axis, .offset = 7, .window = window, .range = {}};
     request.width = 2;
-    const auto image = slice(where, 1, unit_box, request);
+    const auto image = slice({where}, 1, unit_box, request);
     ASSERT_TRUE(image);
     ASSERT_EQ(image->height, 1);
     EXPECT_DOUBLE_EQ(image->at(1, 0).value, expected[axis]);
   }
   SliceRequest tall{.window = SliceWindow{0, 0, 1, 2}, .range = {}};
   tall.width = 1;
-  EXPECT_DOUBLE_EQ(slice(where, 1, unit_box, tall)->at(0, 0).value, 0.5 + 150) << "the first row is the upper one";
+  EXPECT_DOUBLE_EQ(slice({where}, 1, unit_box, tall)->at(0, 0).value, 0.5 + 150) << "the first row is the upper one";
+}
+
+// A field that tells how small the box was in which it was asked; NaN outside of it.
+SliceField asked_in(const Box3& box) {
+  return {.at =
+              [box](const Vec3d& p) {
+                return SliceSample{box.contains(p) ? max_component(box.size()) : NAN, {}};
+              },
+          .within =
+              [box](const Box3& inner) {
+                return asked_in(box.contains(inner.lower) && box.contains(inner.upper) ? inner : Box3{});
+              }};
+}
+
+TEST(Slice, AsksForFieldsInBoxesInBoxesAroundTheirPixels) {
+  for (const int width : {1, 7, 16, 17, 300}) {
+    const SliceWindow window{-1, -0.5, 1, 0.5};
+    SliceRequest request{.window = window, .range = {}};
+    request.width = width;
+    const Box3 all{{-2, -2, -2}, {2, 2, 2}};
+    const auto image = slice(asked_in(all), 1, unit_box, request);
+    ASSERT_TRUE(image);
+    for (const SliceSample& s : image->samples) {
+      const double largest = width > 16 ? 16 * image->units_per_pixel() : 4;
+      EXPECT_LE(s.value, largest + 1e-12) << "of a width of " << width;
+    }
+  }
 }
 
 TEST(Slice, DefaultWindowHoldsTheObjectAndAQuarterAround) {
@@ -114,7 +141,7 @@ TEST(Slice, LegendGrowsThePictureOfEveryShape) {
   for (const SliceWindow& w : {SliceWindow{0, 0, 1, 1}, SliceWindow{0, 0, 1e-7, 1e-9}, SliceWindow{-1e6, 0, 0, 4e6}}) {
     SliceRequest request{.window = w, .range = {}};
     request.width = 100;
-    const auto image = slice(ball, 1, unit_box, request);
+    const auto image = slice({ball}, 1, unit_box, request);
     ASSERT_TRUE(image);
     const auto painted = paint(*image, {.range = {}, .units = "µm"});
     ASSERT_TRUE(painted);
@@ -125,13 +152,13 @@ TEST(Slice, LegendGrowsThePictureOfEveryShape) {
 
 TEST(Slice, RefusesWhatHasNoPicture) {
   SliceRequest request;
-  EXPECT_FALSE(slice(ball, 1, Box3{}, request)) << "no bounds";
+  EXPECT_FALSE(slice({ball}, 1, Box3{}, request)) << "no bounds";
   request.window = SliceWindow{0, 0, 0, 1};
-  EXPECT_FALSE(slice(ball, 1, unit_box, request)) << "no width";
+  EXPECT_FALSE(slice({ball}, 1, unit_box, request)) << "no width";
   request.window = SliceWindow{0, 0, 1, INFINITY};
-  EXPECT_FALSE(slice(ball, 1, unit_box, request)) << "infinite";
+  EXPECT_FALSE(slice({ball}, 1, unit_box, request)) << "infinite";
   request.window = SliceWindow{0, 0, 1, 1e6};
-  EXPECT_FALSE(slice(ball, 1, unit_box, request)) << "too many pixels";
+  EXPECT_FALSE(slice({ball}, 1, unit_box, request)) << "too many pixels";
   EXPECT_FALSE(paint(slice_ball(4), {.range = std::pair(1.0, 1.0), .units = {}}));
   EXPECT_FALSE(paint(slice_ball(4), {.range = {}, .colormap = "jet", .units = {}}));
 }

@@ -46,6 +46,11 @@ TEST(Ticks, LabelsTellNeighboursApart) {
   EXPECT_EQ(label(-150, 50), "\u2212150");
   EXPECT_EQ(label(1e-17, 0.1), "0");
   EXPECT_EQ(label(1000.5, 0.5), "1000.5");
+  EXPECT_EQ(label(200, 200), "200");
+  EXPECT_EQ(label(-400, 200), "\u2212400");
+  EXPECT_EQ(label(10, 5), "10");
+  EXPECT_EQ(label(0.0002, 0.0001), "0.0002");
+  EXPECT_EQ(label(2e7, 1e7), "2e+07");
 }
 
 }  // namespace

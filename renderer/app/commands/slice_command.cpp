@@ -1,6 +1,7 @@
 // marrow slice: a field on an axis plane, in false colour or as raw numbers.
 #include <algorithm>
 
+#include "field/program/programs_in_box.h"
 #include "renderer/app/command_line/commands.h"
 #include "renderer/app/command_line/files.h"
 #include "renderer/app/input/scene_input.h"
@@ -14,16 +15,32 @@
 namespace marrow {
 namespace {
 
-// Of several objects the largest value: what is inside any of them is inside.
-FieldFunction largest_of(std::vector<const FieldObject*> fields) {
-  return [fields = std::move(fields)](const Vec3d& p) {
-    FieldSample best = evaluate(fields.front()->program, p);
-    for (std::size_t i = 1; i < fields.size(); ++i) {
-      const FieldSample sample = evaluate(fields[i]->program, p);
+SliceSample sample_of(const FieldSample& s) { return {s.value, s.gradient}; }
+
+SliceField in_box(const ProgramsInBox& programs) {
+  return {.at = [programs](const Vec3d& p) { return sample_of(programs.at(p)); },
+          .within = [programs](const Box3& box) { return in_box(programs.within(box)); }};
+}
+
+// Of several objects the largest value: what is inside any of them is inside. Of few skeletons all are summed as they
+// are.
+SliceField largest_of(const std::vector<const FieldObject*>& fields) {
+  constexpr std::size_t few = 64;
+  std::vector<const FieldProgram*> programs;
+  std::size_t count = 0;
+  for (const FieldObject* field : fields) {
+    programs.push_back(&field->program);
+    count += count_of_all(field->program);
+  }
+  if (count > few) return in_box(ProgramsInBox(programs));
+  return {.at = [programs](const Vec3d& p) {
+    FieldSample best = evaluate(*programs.front(), p);
+    for (std::size_t i = 1; i < programs.size(); ++i) {
+      const FieldSample sample = evaluate(*programs[i], p);
       if (sample.value > best.value) best = sample;
     }
-    return SliceSample{best.value, best.gradient};
-  };
+    return sample_of(best);
+  }};
 }
 
 Box3 extent_of(const std::vector<const FieldObject*>& fields) {
