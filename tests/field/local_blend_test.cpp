@@ -10,6 +10,7 @@
 #include "field/math/elementary.h"
 #include "field/skeleton/distance.h"
 #include "tests/field/random.h"
+#include "tests/field/varied_blend.h"
 
 namespace marrow {
 namespace {
@@ -94,6 +95,7 @@ TEST(LocalBlend, ManyPrimitivesBecomePolynomials) {
     blend.degree = random.whole(3, 8);
     if (round % 3 == 0) blend.kernel = KernelFamily::Cauchy;
     blend.alpha = random.between(0, 1.5);
+    if (round % 4 == 1) blend.alpha_source = std::make_shared<test::WavingAngle>();
     for (int strand = 0; strand < 120; ++strand) {
       Vec3d at = random.vector(2);
       for (int i = 0; i < 8; ++i) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "field/blend/bounds/angle/alpha_bounds.h"
 #include "field/blend/bounds/sum/distances_in_reach.h"
 #include "field/blend/bounds/sum/sum_bounds.h"
 #include "field/blend/local/far_expansion.h"
@@ -29,6 +30,9 @@ BlendField without_primitives(const BlendField& blend) {
   b.projection = blend.projection;
   return b;
 }
+
+// Then an angle takes all of the sums it is made of.
+bool angle_is_of_skeletons(const BlendField& blend) { return blend.alpha_varies() && !blend.alpha_source; }
 
 // Those whose support meets the ball around the box.
 template <class Skeleton>
@@ -73,7 +77,7 @@ LocalBlend::LocalBlend(const BlendField& blend, std::shared_ptr<const LocalBlend
 
 std::shared_ptr<const LocalBlend> LocalBlend::make(const BlendField& blend, std::shared_ptr<const LocalBlend> outer,
                                                    const Box3& box) {
-  if (blend.alpha_varies() || !is_finite(box.lower) || !is_finite(box.upper)) return outer;
+  if (angle_is_of_skeletons(blend) || !is_finite(box.lower) || !is_finite(box.upper)) return outer;
   const BlendField& from = outer ? outer->rest_ : blend;
   std::shared_ptr<LocalBlend> made(new LocalBlend(blend, outer));
   BlendField& rest = made->rest_;
@@ -154,15 +158,21 @@ double LocalBlend::value(const Vec3d& p) const {
   SkeletonSample sum = sum_of_primitives<Derivatives::ScaleInvariant>(rest_, p);
   for_each_sums([&](const SourceSums& s) { sum += s.value_at(p); });
   if (const FarPolynomial* far = last().far_.get()) sum += far->value_at(p);
-  return correction_.value(sum.value, length(sum.si_gradient));
+  const double G = length(sum.si_gradient);
+  if (blend_.alpha_source) return correction_at(blend_, blend_.alpha_source->at(p).value).value(sum.value, G);
+  return correction_.value(sum.value, G);
 }
 
 LocalBlend::Sample LocalBlend::evaluate(const Vec3d& p) const {
   SkeletonSample sum = sum_of_primitives<Derivatives::Second>(rest_, p);
   for_each_sums([&](const SourceSums& s) { sum += s.at(p).sum; });
   if (const FarPolynomial* far = last().far_.get()) sum += far->at(p);
-  const Correction::Partials c = correction_.partials(sum.value, length(sum.si_gradient));
+  const AlphaSample alpha = blend_.alpha_source ? blend_.alpha_source->at(p) : AlphaSample{};
+  const double G = length(sum.si_gradient);
+  const Correction::Partials c = blend_.alpha_source ? correction_at(blend_, alpha.value).partials(sum.value, G)
+                                                     : correction_.partials(sum.value, G);
   Vec3d gradient = sum.gradient * c.df;
+  if (blend_.alpha_source) gradient += alpha.gradient * c.dalpha;
   if (c.dG_over_G != 0) gradient += sum.si_jacobian.transposed_times(sum.si_gradient) * c.dG_over_G;
   return {c.value, gradient};
 }
@@ -172,7 +182,9 @@ BlendBounds LocalBlend::bounds(const Box3& box, Wanted wanted, const Within& wit
   SumBounds sum(rest_, box, wanted, within);
   for_each_sums([&](const SourceSums& s) { sum.add(s); });
   if (const FarPolynomial* far = last().far_.get()) sum.add(*far);
-  return blend_bounds(blend_, sum, {blend_.alpha, {}}, correction_);
+  if (!blend_.alpha_source) return blend_bounds(blend_, sum, {blend_.alpha, {}}, correction_);
+  const AngleBounds angle = alpha_bounds(blend_, sum, box);
+  return blend_bounds(blend_, sum, angle, correction_at(blend_, angle.value.lo));
 }
 
 std::size_t LocalBlend::near_count() const {
