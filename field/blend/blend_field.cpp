@@ -102,7 +102,8 @@ bool points_are_strands(const BlendField& blend) {
   });
 }
 
-// Nearer to a right angle the guard bends the curve where surfaces are (curve/angle_tables.h).
+// Below it, of degree 3, the guard bends the curve C = 1 at fields where surfaces are, and tables of a range do not
+// follow (trace/curve/README.md).
 constexpr double least_of_range = -0.8;
 
 bool all_angles_are_known(const BlendField& blend) {

@@ -18,6 +18,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 }  // namespace
 
 MaterialSearch::MaterialSearch(const BlendField& blend, const SourceTree& tree) : tree_(tree), degree_(blend.degree) {
+  if (blend.points.materials.empty() && blend.segments.materials.empty()) return;
   label_pieces(blend);
   if (materials_.size() > 1) label_nodes();
   else of_piece_ = {};
@@ -70,7 +71,7 @@ MaterialSearch::Share MaterialSearch::exact_share_of(std::uint32_t i, const Vec3
   return {SourceRef::piece(i), of_piece_[i], field, field};
 }
 
-// Of a group that is nearer than two fifths of its radius bounds tell next to nothing.
+// Of a group whose ball is nearer than two fifths of its radius bounds tell next to nothing.
 void MaterialSearch::add(SourceRef source, const Vec3d& p, std::vector<Share>& shares) const {
   constexpr double clear = 1.4;
   if (source.is_piece()) {

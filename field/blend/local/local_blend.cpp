@@ -31,7 +31,7 @@ BlendField without_primitives(const BlendField& blend) {
   return b;
 }
 
-// Then an angle takes all of the sums it is made of.
+// Then it is made of sums over all of them, as they are.
 bool angle_is_of_skeletons(const BlendField& blend) { return blend.alpha_varies() && !blend.alpha_source; }
 
 // Those whose support meets the ball around the box.
