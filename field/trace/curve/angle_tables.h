@@ -29,8 +29,8 @@ struct AngleTables {
 class AngleCurves {
  public:
   AngleCurves() = default;
-  /// least < most, in radians, as of a Correction; degree, cavity and projection are those of the correction. Up to a
-  /// G, as iso_table.h says.
+  /// -0.8 <= least < most, in radians: below, of degree 3, entries do not follow where the guard of the operator begins
+  /// (README). Degree, cavity and projection are those of the correction. Up to a G, as iso_table.h says.
   AngleCurves(const Correction&, double least, double most, UpToGradient);
   AngleCurves(AngleCurves&&) = default;  // tables stay where they are
   AngleCurves& operator=(AngleCurves&&) = default;

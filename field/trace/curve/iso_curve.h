@@ -18,8 +18,8 @@ class IsoCurve {
   /// For one angle, in radians, up to a G as iso_table.h says.
   IsoCurve(const Correction&, double alpha, UpToGradient);
   IsoCurve(const Correction&, double alpha);  ///< up to the usual one
-  /// For all angles from `least` to `most`, 0 <= least < most, in radians, with the degree, cavity and projection of a
-  /// correction.
+  /// For all angles from `least` to `most`, -0.8 <= least < most (angle_tables.h), in radians, with the degree, cavity
+  /// and projection of a correction.
   IsoCurve(const Correction&, double least, double most, UpToGradient);
   IsoCurve(const Correction&, double least, double most);  ///< up to the usual one
 

@@ -22,8 +22,7 @@ SliceField in_box(const ProgramsInBox& programs) {
           .within = [programs](const Box3& box) { return in_box(programs.within(box)); }};
 }
 
-// Of several objects the largest value: what is inside any of them is inside. Of few skeletons all are summed as they
-// are.
+// Of several objects the largest value: what is inside any of them is inside. Few skeletons are all summed as they are.
 SliceField largest_of(const std::vector<const FieldObject*>& fields) {
   constexpr std::size_t few = 64;
   std::vector<const FieldProgram*> programs;
@@ -32,15 +31,9 @@ SliceField largest_of(const std::vector<const FieldObject*>& fields) {
     programs.push_back(&field->program);
     count += count_of_all(field->program);
   }
-  if (count > few) return in_box(ProgramsInBox(programs));
-  return {.at = [programs](const Vec3d& p) {
-    FieldSample best = evaluate(*programs.front(), p);
-    for (std::size_t i = 1; i < programs.size(); ++i) {
-      const FieldSample sample = evaluate(*programs[i], p);
-      if (sample.value > best.value) best = sample;
-    }
-    return sample_of(best);
-  }};
+  SliceField largest = in_box(ProgramsInBox(programs));
+  if (count <= few) largest.within = nullptr;
+  return largest;
 }
 
 Box3 extent_of(const std::vector<const FieldObject*>& fields) {
