@@ -44,8 +44,8 @@ struct VariedAngle {
 
   // The one that was summed last serves where it tells this place as well.
   SummedShare share_at(const Sample& p, const OnRay<float> (&at)[3]) const {
-    constexpr float known_to = 1e-5F;  // as sums of floats are in any case
-    const float h = p.t - last.t;
+    // C changes by up to degree - 1 times as much as the angle.
+    const float known_to = 3e-6F / static_cast<float>(block.degree - 1), h = p.t - last.t;
     if (last.bend * h * h < known_to && abs_of(h) < 0.02F * last.distance) return last;
     last = mean_share(p, at);
     return last;

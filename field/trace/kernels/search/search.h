@@ -194,17 +194,25 @@ struct Search {
                   0.5F * (front + right));
   }
 
+  // Whether a sample tells the field of its place. Where skeletons have an angle each and the ends of their range tell
+  // nearly the same it tells that of one end.
+  static Mask is_told(const Sample& p) {
+    if constexpr (Rule == Angle::Mean) return VariedAngle::known(p);
+    else return p.t == p.t;
+  }
+
   // The root between two samples near by, by the cubic through both, or Newton's from the last outside one, when it is
-  // proved: the certificate reaches it to within the shortest gap, and the field is above 1 just behind it. Newton's
-  // step is so short that its error is some ulp: near one skeleton of third order, where several bend the scaled field
-  // of second.
+  // proved: the certificate reaches it to within the shortest gap, and the field is above 1 just behind it. Both go so
+  // short a way that C is off by some 1e-6: where several skeletons bend the scaled field, a step of h distances is off
+  // by (m h)^2 / 2, m = degree - 1, and the cubic by (m h)^4 / 384. Near one it is straight but for the third order.
   Mask pinned(Mask rays, F& root) const {
-    constexpr float longest_step = 6e-4F;
-    rays = rays & have_last;
+    const float m = static_cast<float>(march.block.degree - 1);
+    const float longest_step = 6e-4F * (m > 3 ? 3 / m : 1), longest_between = 0.02F * (m > 5 ? 5 / m : 1);
+    rays = rays & have_last & is_told(last);
     if (!any(rays)) return rays;
     const F tolerance = shortest_gap * last.distance;
-    const Mask between =
-        rays & bracketed() & (inside.t - last.t < 0.02F * last.distance) & (inside.scaled_slope < 0.0F);
+    const Mask between = rays & bracketed() & is_told(inside) & (inside.t - last.t < longest_between * last.distance) &
+                         (inside.scaled_slope < 0.0F);
     F step = last.newton_step();
     if (any(between)) step = select(between, hermite_root() - last.t, step);
     root = select(rays, max_of(front, last.t + step), root);
