@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "field/trace/cells/precision.h"
 #include "field/trace/cells/strands.h"
 #include "field/trace/curve/largest_gradient.h"
+#include "field/trace/curve/shared_iso_curve.h"
 #include "field/trace/curve/turned_curve.h"
 #include "field/trace/material_search.h"
 #include "field/trace/shares/angle_field.h"
@@ -35,22 +37,23 @@ inline Correction correction_for(const BlendField& field) {
 
 // Up to what |grad_S f| comes to, but for skeletons shorter than 1e-8 of their radius at degree 3, 1e-5 where the angle
 // varies.
-inline IsoCurve iso_curve_for(const BlendField& field, const Correction& correction,
-                              const std::optional<AngleRange>& range) {
+inline std::shared_ptr<const IsoCurve> iso_curve_for(const BlendField& field, const Correction& correction,
+                                                     const std::optional<AngleRange>& range) {
   constexpr double most_times = 128, most_times_of_ranges = 16;
   const double usual = usual_gradient(correction), largest = largest_gradient(field);
   const auto up_to = [&](double most) { return UpToGradient{std::clamp(largest, usual, most * usual)}; };
   // Of these the curve is level behind the end of its table.
   const bool is_level = correction.projection() == Projection::Exact || correction.alpha() == std::numbers::pi / 2;
-  if (range) return {correction, range->least, range->most, up_to(is_level ? 1 : most_times_of_ranges)};
-  return {correction, correction.alpha(), up_to(is_level ? 1 : most_times)};
+  if (range) return shared_iso_curve(correction, range->least, range->most, up_to(is_level ? 1 : most_times_of_ranges));
+  return shared_iso_curve(correction, correction.alpha(), correction.alpha(), up_to(is_level ? 1 : most_times));
 }
 
 struct BlendTracer::State {
   BlendField field;
   Correction correction;
   std::optional<AngleRange> range;  // of an alpha that varies
-  IsoCurve iso;
+  std::shared_ptr<const IsoCurve> shared_iso;
+  const IsoCurve& iso;
   PieceCutter cutter;
   SourceTree sources, angle_sources;  // the second one where skeletons have an angle each
   MaterialSearch materials;
@@ -67,7 +70,8 @@ struct BlendTracer::State {
       : field(std::move(f)),
         correction(correction_for(field)),
         range(angle_range(field)),
-        iso(iso_curve_for(field, correction, range)),
+        shared_iso(iso_curve_for(field, correction, range)),
+        iso(*shared_iso),
         cutter(field.degree, iso.critical_field()),
         sources(cutter.cut(field), field.degree),
         angle_sources(

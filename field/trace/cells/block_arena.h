@@ -1,4 +1,4 @@
-// Memory for blocks: large chunks handed out front to back, freed all at once.
+// Memory for blocks: chunks, soon large ones, handed out front to back, freed all at once.
 // Blocks come by the ten thousand while rays wait; one page fault for each 4 KiB of them costs more than filling them.
 #pragma once
 
