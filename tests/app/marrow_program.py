@@ -2,6 +2,7 @@
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import tempfile
 import time
@@ -27,6 +28,21 @@ objects:
         alpha: sum
         of:
           - point: {at: [0, 0, 0], radius: 1}
+"""
+
+# Bounds tell little of it, so that rays take milliseconds.
+SLOW = """marrow: 1
+materials:
+  skin: {diffuse: {color: 0.5}}
+objects:
+  - name: rings
+    material: skin
+    field:
+      blend:
+        kernel: {compact: 3}
+        of:
+          - circle: {axes: [[1, 0, 0], [0, 1, 0]], radius: 0.3}
+          - circle: {center: [0.5, 0, 0], axes: [[1, 0, 0], [0, 0.2, 1]], radius: 0.3}
 """
 
 TWO_OBJECTS = POINT + """  - name: other
@@ -78,6 +94,16 @@ class ProgramTest(unittest.TestCase):
             self.assertIsNone(process.poll(), "it ended before")
             status = pathlib.Path(f"/proc/{process.pid}/status").read_text(encoding="utf-8")
             caught = int(re.search(r"SigCgt:\s*(\w+)", status)[1], 16)
+
+    def interrupted(self, *arguments):
+        """What a command wrote to both streams that was asked to stop as soon as it would."""
+        process = subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, env=self.environment(),
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.wait_until_caught(process, signal.SIGINT)
+        process.send_signal(signal.SIGINT)
+        out, told = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75, told)
+        return out, told
 
     def files(self):
         return sorted(path.name for path in self.folder.iterdir())

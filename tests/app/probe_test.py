@@ -3,7 +3,7 @@ import json
 import math
 import unittest
 
-from marrow_program import POINT, TWO_OBJECTS, ProgramTest
+from marrow_program import POINT, SLOW, TWO_OBJECTS, ProgramTest
 
 POINTS = [(0.5, 0, 0), (0, 2, 0), (1, 1, 1), (-3, 0.25, 1e-3)]
 BASIC = ["point", "value", "gradient", "iso", "inside"]
@@ -70,6 +70,19 @@ class ProbeTest(ProgramTest):
         answer = self.probe(self.write("point.yaml", POINT), [(0, 0, 0)])[0]
         self.assertEqual(answer["sum"], math.inf)
         self.assertTrue(answer["inside"])
+
+    def test_an_interrupted_list_is_still_json(self):
+        self.write("points.txt", "".join(f"{0.001 * k} 0.37 0.1\n" for k in range(200000)))
+        out, told = self.interrupted("probe", self.write("rings.yaml", SLOW), "--points", "points.txt", "--curvature")
+        self.assertLess(len(json.loads(out)), 200000)
+        self.assertIn("of 200000 points", told)
+
+    def test_the_answer_does_not_depend_on_threads(self):
+        scene = self.write("two.yaml", TWO_OBJECTS)
+        points = [(0.001 * k, 0.5, 0.1) for k in range(5000)]
+        one, two = (self.probe(scene, points, "--object", "other", "-t", n) for n in "12")
+        self.assertEqual(one, two)
+        self.assertEqual([answer["point"] for answer in one], [list(p) for p in points])
 
     def test_bad_lines_are_all_told(self):
         scene = self.write("point.yaml", POINT)

@@ -1,31 +1,14 @@
 """Rays of a list, against closed forms: a ball of radius 1 at the origin, a plane at y = -1."""
 import json
 import math
-import signal
-import subprocess
 import unittest
 from random import Random
 
-from marrow_program import POINT, PROGRAM, TWO_OBJECTS, ProgramTest
+from marrow_program import POINT, SLOW, TWO_OBJECTS, ProgramTest
 
 OF_HIT = ["origin", "direction", "hit", "t", "position", "normal", "outside", "object", "material", "evaluations",
           "certified"]
 OF_MISS = ["origin", "direction", "hit", "evaluations", "certified"]
-
-# Bounds tell little of it, so that rays take milliseconds.
-SLOW = """marrow: 1
-materials:
-  skin: {diffuse: {color: 0.5}}
-objects:
-  - name: rings
-    material: skin
-    field:
-      blend:
-        kernel: {compact: 3}
-        of:
-          - circle: {axes: [[1, 0, 0], [0, 1, 0]], radius: 0.3}
-          - circle: {center: [0.5, 0, 0], axes: [[1, 0, 0], [0, 0.2, 1]], radius: 0.3}
-"""
 
 
 def rows(rays):
@@ -123,13 +106,7 @@ objects:
 
     def test_an_interrupted_list_is_still_json(self):
         self.write("rays.txt", rows([(0.001 * k, 0.37, 4, 0, 0.01, -1) for k in range(200000)]))
-        process = subprocess.Popen([PROGRAM, "trace", self.write("rings.yaml", SLOW), "--rays", "rays.txt"],
-                                   cwd=self.folder, env=self.environment(), stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True)
-        self.wait_until_caught(process, signal.SIGINT)
-        process.send_signal(signal.SIGINT)
-        out, told = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 75, told)
+        out, told = self.interrupted("trace", self.write("rings.yaml", SLOW), "--rays", "rays.txt")
         self.assertLess(len(json.loads(out)), 200000)
         self.assertIn("of 200000 rays", told)
 

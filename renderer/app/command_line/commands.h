@@ -57,6 +57,7 @@ struct ProbeCommand {
   std::filesystem::path points;  ///< "-": standard input
   bool curvature = false;        ///< the Hessian too
   bool materials = false;        ///< the weights of materials too
+  int threads = 0;               ///< 0: all that the process may use
 };
 
 struct TraceCommand {

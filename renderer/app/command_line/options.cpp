@@ -142,7 +142,11 @@ void describe(CLI::App& app, ProbeCommand& c) {
   app.add_option_function<std::string>(
          "--format", [](const std::string&) {}, "json, the only one so far")
       ->check(CLI::IsMember({"json"}));
-  app.footer("Example:\n  echo 0 0 1.5 | marrow probe two_points.yaml --object pair --points - --format json");
+  add_threads(app, c.threads);
+  app.footer(
+      "Example:\n  echo 0 0 1.5 | marrow probe two_points.yaml --object pair --points - --format json\n"
+      "Each point sums all skeletons as they are, to the last digits; a slice sums what is far away at once.\n"
+      "SIGINT or SIGTERM: the array ends early and the exit code is 75.");
 }
 
 void describe(CLI::App& app, TraceCommand& c) {

@@ -1,9 +1,15 @@
 // marrow probe: a field at given points, in numbers that can be read back without loss.
+#include <algorithm>
 #include <fstream>
 #include <iostream>
+#include <span>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 
 #include "field/blend/curvature.h"
 #include "field/number/variables_at.h"
@@ -12,6 +18,8 @@
 #include "renderer/app/command_line/files.h"
 #include "renderer/app/input/point_list.h"
 #include "renderer/app/input/scene_input.h"
+#include "renderer/app/machine/interrupt.h"
+#include "renderer/app/machine/tracing_setup.h"
 #include "renderer/app/report/report.h"
 #include "renderer/app/text/json_values.h"
 #include "renderer/app/text/print.h"
@@ -67,21 +75,36 @@ std::string materials_of_field(const FieldObject& field, const SceneDescription&
   return fmt::format(R"(, "materials": {})", names.dump());
 }
 
-void print_samples(const FieldObject& field, const SceneDescription& scene, const std::vector<Vec3d>& points,
-                   const ProbeCommand& command) {
+std::string text_of(const FieldObject& field, const SceneDescription& scene, const Vec3d& p,
+                    const ProbeCommand& command) {
   const FieldProgram& program = field.program;
   const bool blend = is_single_blend(program);
-  std::string_view separator = "[\n";
-  for (const Vec3d& p : points) {
-    std::string sample = sample_of_field(program, p);
-    if (blend) sample += sample_of_blend(program.parts()[0], p);
-    if (blend && command.curvature) sample += hessian_of_sum(program.parts()[0], p);
-    if (command.curvature) sample += curvature_of_field(program, p);
-    if (command.materials) sample += materials_of_field(field, scene, p);
-    say(fmt::format("{}{{{}}}", separator, sample));
-    separator = ",\n";
+  std::string sample = sample_of_field(program, p);
+  if (blend) sample += sample_of_blend(program.parts()[0], p);
+  if (blend && command.curvature) sample += hessian_of_sum(program.parts()[0], p);
+  if (command.curvature) sample += curvature_of_field(program, p);
+  if (command.materials) sample += materials_of_field(field, scene, p);
+  return fmt::format("{{{}}}", sample);
+}
+
+// Returns how many were told, in their order, up to an interrupt.
+std::size_t print_samples(const FieldObject& field, const SceneDescription& scene, std::span<const Vec3d> points,
+                          const ProbeCommand& command) {
+  constexpr std::size_t batch = 1 << 12;  // of texts held in memory
+  std::size_t told = 0;
+  std::vector<std::string> texts;
+  say("[");
+  while (told < points.size() && !interruption_flag()) {
+    const auto now = points.subspan(told, std::min(batch, points.size() - told));
+    texts.assign(now.size(), {});
+    tbb::parallel_for(std::size_t{0}, now.size(), [&](std::size_t i) {
+      if (!interruption_flag()) texts[i] = text_of(field, scene, now[i], command);
+    });
+    for (std::size_t i = 0; i < now.size() && !texts[i].empty(); ++i, ++told)
+      say(fmt::format("{}{}", told == 0 ? "\n" : ",\n", texts[i]));
   }
-  say(fmt::format("{}]\n", points.empty() ? "[" : "\n"));
+  say(points.empty() ? "]\n" : "\n]\n");
+  return told;
 }
 
 Diagnostic several_fields(const std::vector<const FieldObject*>& fields, const SceneDescription& scene) {
@@ -115,8 +138,12 @@ ExitCode run(const ProbeCommand& command) {
   SourceCache sources;
   const auto points = points_of(command.points, sources);
   if (!points) return report(points.why(), sources, ExitCode::BadInput);
-  print_samples(*fields->front(), scene->description, *points, command);
-  return ExitCode::Ok;
+  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, most_threads(command.threads));
+  interruption_flag();  // from here on signals end the list, not the program
+  const std::size_t told = print_samples(*fields->front(), scene->description, *points, command);
+  if (told == points->size()) return ExitCode::Ok;
+  complain(fmt::format("interrupted; {} of {} points were evaluated\n", told, points->size()));
+  return ExitCode::Interrupted;
 }
 
 }  // namespace marrow
