@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
+#include "field/blend/angle/local_contact.h"
 #include "field/blend/gather.h"
 #include "field/blend/primitive_visit.h"
 #include "field/math/elementary.h"
@@ -91,6 +93,18 @@ std::optional<double> angle_of_all_bounds(const BlendField& blend) {
   return first.least == first.most && are_equal(blend.direction_bounds) ? std::optional(first.least) : std::nullopt;
 }
 
+// By more than rounding.
+bool have_several_radii(const BlendField& blend) {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  blend.for_each_list([&](const auto& list) {
+    for (const auto& s : list.skeletons) {
+      least = std::min(least, mean_radius(s));
+      most = std::max(most, mean_radius(s));
+    }
+  });
+  return most > least * (1 + 1e-12);
+}
+
 // No point is of the strand of another one, or of segments.
 bool points_are_strands(const BlendField& blend) {
   std::vector<bool> taken(blend.direction_bounds.size(), false);
@@ -151,6 +165,11 @@ bool is_very_long(const BlendField& blend) {
 
 std::optional<double> single_angle(const BlendField& blend) {
   if (!blend.alpha_varies()) return blend.alpha;
+  if (blend.local_contact) {
+    const LocalContact& rule = *blend.local_contact;
+    const bool adapts = rule.adapts_to_density() || (rule.adapts_to_radii() && have_several_radii(blend));
+    return adapts ? std::nullopt : std::optional(rule.contact());
+  }
   if (blend.alpha_per_skeleton) return common_angle(blend);
   if (blend.direction_bounds.size() == 1) return blend.direction_bounds.front().most;
   if (const auto angle = angle_of_all_bounds(blend)) return angle;

@@ -25,12 +25,13 @@ class LocalContact;
 /// parallel to skeletons; alphas is parallel to skeletons in a blend with `alpha_per_skeleton`, else empty; alphas_to
 /// is empty or parallel to skeletons, and then an angle is linear from the one at the begin to this one at the end; of
 /// a triangle alphas_to is that of the second corner and alphas_third (else empty) that of the third; strands is empty
-/// (each by itself) or parallel to skeletons, ascending: what has one number came from one polyline, curve, ...
+/// (each by itself) or parallel to skeletons, ascending: what has one number came from one polyline, curve, ...;
+/// log_radii is empty, or, where these are parts of the skeletons of another blend, holds their radius_mark() there.
 template <class Skeleton>
 struct PrimitiveList {
   std::vector<Skeleton> skeletons;
   std::vector<MaterialId> materials;
-  std::vector<double> alphas, alphas_to, alphas_third;
+  std::vector<double> alphas, alphas_to, alphas_third, log_radii;
   std::vector<std::uint32_t> strands;
 
   std::size_t size() const { return skeletons.size(); }
@@ -131,7 +132,8 @@ Correction correction_of(const BlendField&);
 AlphaSample alpha_at(const BlendField&, const Vec3d& p);
 
 /// The angle of a blend whose rule gives the same one everywhere (but where the sum is 0 or infinite): constant, or of
-/// skeletons that all have the same one, or by the directions of two or more points, which have none and so all cross.
+/// skeletons that all have the same one, or by the directions of two or more points, which have none and so all cross,
+/// or at contact adapted to radii that are all the same.
 std::optional<double> single_angle(const BlendField&);
 
 /// What of a blend the tracer of blends has no bounds for, as a message; empty when it can trace all of it. The tracer

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "field/blend/primitive_visit.h"
+#include "field/blend/radius_marks.h"
 #include "field/math/elementary.h"
 #include "field/skeleton/shares.h"
 
@@ -92,30 +93,6 @@ Gathered by_direction(const BlendField& blend, const EachDirection& each_directi
   return all;
 }
 
-// Sums of f_i, f_i l_i and f_i l_i^2, with l_i the logarithm of a radius over that of the first primitive.
-class Spread {
- public:
-  void add(const SkeletonSample& s, double radius) {
-    if (first_ == 0) first_ = radius;
-    const double l = log(radius / first_);
-    linear_ += s.value * l;
-    square_ += s.value * (l * l);
-    linear_gradient_ += s.gradient * l;
-    square_gradient_ += s.gradient * (l * l);
-  }
-  void tell(const SkeletonSample& sum, Neighbourhood& place) const {
-    const double mean = linear_ / sum.value, mean_square = square_ / sum.value;
-    const Vec3d mean_gradient = (linear_gradient_ - sum.gradient * mean) / sum.value;
-    place.spread = 4 * (mean_square - mean * mean);
-    place.spread_gradient =
-        ((square_gradient_ - sum.gradient * mean_square) / sum.value - mean_gradient * (2 * mean)) * 4.0;
-  }
-
- private:
-  double first_ = 0, linear_ = 0, square_ = 0;
-  Vec3d linear_gradient_{}, square_gradient_{};
-};
-
 SkeletonSample near_field_of(const auto& skeleton, const Vec3d& p) {
   constexpr int m = LocalContact::near_degree;
   if constexpr (requires { segment_field<Derivatives::First>(skeleton, p, m); })
@@ -129,12 +106,14 @@ SkeletonSample near_field_of(const auto& skeleton, const Vec3d& p) {
 
 // each_near(visit) calls visit(sample, near sample, list, i) for each primitive.
 template <class EachNear>
-Neighbourhood told(const LocalContact& rule, const EachNear& each_near, SkeletonSample& sum) {
-  Spread spread;
+Neighbourhood told(const BlendField& blend, const EachNear& each_near, SkeletonSample& sum) {
+  const LocalContact& rule = *blend.local_contact;
+  const double reference = reference_radius(blend);
+  MarkSums marks;
   SkeletonSample near;
   each_near([&](const SkeletonSample& s, const SkeletonSample& n, const auto& list, std::size_t i) {
     sum += s;
-    if (rule.adapts_to_radii()) spread.add(s, mean_radius(list.skeletons[i]));
+    if (rule.adapts_to_radii()) marks.add(s, radius_mark(list, i, reference));
     near += n;
   });
   Neighbourhood place{.field = sum.value,
@@ -142,7 +121,7 @@ Neighbourhood told(const LocalContact& rule, const EachNear& each_near, Skeleton
                       .spread_gradient = {},
                       .near_field = near.value,
                       .near_gradient = near.gradient};
-  if (rule.adapts_to_radii() && is_usable(sum)) spread.tell(sum, place);
+  if (rule.adapts_to_radii() && is_usable(sum)) set_spread(marks, place);
   return place;
 }
 
@@ -159,7 +138,7 @@ Gathered by_local_contact(const BlendField& blend, const Vec3d& p) {
       visit(s, near_field_for(rule, list.skeletons[i], p), list, i);
     });
   };
-  const Neighbourhood place = told(rule, each_near, all.sum);
+  const Neighbourhood place = told(blend, each_near, all.sum);
   if (is_usable(all.sum)) all.alpha = rule.at(place);
   return all;
 }
@@ -198,7 +177,7 @@ PartsAround parts_around(const BlendField& blend, const Vec3d& p, const std::vec
     });
   };
   SkeletonSample sum;
-  around.place = told(rule, each_near, sum);
+  around.place = told(blend, each_near, sum);
   return around;
 }
 

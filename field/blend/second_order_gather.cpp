@@ -7,6 +7,7 @@
 
 #include "field/blend/angle/local_contact.h"
 #include "field/blend/primitive_visit.h"
+#include "field/blend/radius_marks.h"
 #include "field/math/elementary.h"
 
 namespace marrow {
@@ -98,13 +99,11 @@ SecondOrderGathered by_local_contact(const BlendField& blend, const Vec3d& p) {
   SecondOrderGathered all;
   const LocalContact& rule = *blend.local_contact;
   const Kernel near_kernel{KernelFamily::Inverse, LocalContact::near_degree, 1};
+  const double reference = reference_radius(blend);
   X linear, squared, near;
-  double first = 0;
   for_each_second_order(blend, p, [&](const SecondOrderSample& s, const auto& list, std::size_t i) {
     all.sum += s;
-    const double radius = mean_radius(list.skeletons[i]);
-    if (first == 0) first = radius;
-    const double l = log(radius / first);
+    const double l = radius_mark(list, i, reference);
     linear += s.field * l;
     squared += s.field * (l * l);
     if (rule.adapts_to_density()) near += second_order(list.skeletons[i], p, near_kernel).field;

@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <memory>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "field/blend/angle/contact.h"
+#include "field/blend/angle/local_contact.h"
 #include "field/program/field_program.h"
 #include "tests/field/random.h"
 
@@ -188,6 +190,27 @@ TEST(Alpha, IsASingleOneWhereTheRuleGivesNoOther) {
   blend.points.alphas[2] = -0.8;
   EXPECT_TRUE(untraceable_part(blend).empty());
   blend.points.alphas[2] = -0.81;
+  EXPECT_FALSE(untraceable_part(blend).empty());
+}
+
+TEST(Alpha, OfContactThatAdaptsToRadiiIsASingleOneWhereTheseAreEqual) {
+  BlendField blend;
+  blend.segments.add({{0, 0, 0}, {1, 0, 0}, 0.3, 0.3}, {});
+  blend.points.add({{0.2, 0.9, 0}, 0.3}, {});
+  const auto adapts_to = [&](bool radii, bool density) {
+    blend.local_contact =
+        std::make_shared<const LocalContact>(kernel_of(blend), true, Projection::Paper, radii, density);
+  };
+  adapts_to(true, false);
+  EXPECT_EQ(single_angle(blend), contact_alpha(4));
+  EXPECT_NEAR(alpha_at(blend, {0.4, 0.5, -0.3}).value, contact_alpha(4), 1e-12);
+  EXPECT_TRUE(untraceable_part(blend).empty());
+  adapts_to(false, true);
+  EXPECT_FALSE(single_angle(blend));
+  EXPECT_FALSE(untraceable_part(blend).empty());
+  adapts_to(true, false);
+  blend.points.skeletons[0].radius = 0.31;
+  EXPECT_FALSE(single_angle(blend));
   EXPECT_FALSE(untraceable_part(blend).empty());
 }
 

@@ -20,7 +20,7 @@ using test::Random;
 struct Gathered {
   Box3 box;
   SourceSums sums;
-  std::unique_ptr<const FarPolynomial> far;
+  std::unique_ptr<const FarPolynomial> far, marks;
   double allowed;  // of f
 };
 
@@ -40,14 +40,15 @@ Gathered gather(Random& random, int exponent, bool lifted, double error, const F
   const double scale = pow(10.0, random.between(-4, 4));
   const Vec3d center = around ? around->center() + random.vector(0.1 * around->size().x) : random.vector(3 * scale);
   const double half = around ? 0.2 * around->size().x : scale * random.between(0.01, 0.1);
-  Gathered g{Box3{center, center}.padded(half), SourceSums(exponent), nullptr, 0};
+  Gathered g{Box3{center, center}.padded(half), SourceSums(exponent, true), nullptr, nullptr, 0};
   const double share = 1e-4;
-  FarExpansion expansion(g.box, lifted, error, share);
+  FarExpansion expansion(g.box, lifted, true, error, share);
   for (int i = random.whole(1, 500); i > 0; --i) {
     const double away = 1.7320508 * half * random.between(1.5, 40);
     Source s{.at = center + direction(random) * away, .radius = half * random.between(0.1, 3)};
     if (lifted) s.lift_squared = pow(random.between(0.1, 2) * s.radius, 2);
     s.weight = pow(away, exponent) * pow(10.0, random.between(-7, -1));
+    s.mark = 2 * std::sin(i);
     const auto view = expansion.seen(s, exponent);
     if (!view) continue;
     g.sums.add(s);
@@ -55,6 +56,7 @@ Gathered gather(Random& random, int exponent, bool lifted, double error, const F
     expansion.add(s, exponent, *view);
   }
   g.far = expansion.polynomial(outer);
+  g.marks = expansion.marks(nullptr);
   EXPECT_LE(expansion.f_error(), g.allowed * (1 + 1e-9));
   return g;
 }
@@ -84,6 +86,10 @@ TEST(FarPolynomial, IsTheSumOfItsSourcesToWithinItsErrors) {
       const double f_off = std::fabs(told.value - exact.value);
       EXPECT_LE(f_off, b.f_error + 1e-12 * exact.value);
       EXPECT_LE(length(told.si_gradient - exact.si_gradient), b.S_error + 1e-12 * b.S_longest);
+      const MarkSums marks = g.marks->marks_at(p), exact_marks = g.sums.marks_at(p);
+      EXPECT_LE(std::fabs(marks.first - exact_marks.first), 2 * (b.f_error + 1e-12 * exact.value));
+      EXPECT_LE(std::fabs(marks.second - exact_marks.second), 4 * (b.f_error + 1e-12 * exact.value));
+      EXPECT_LE(length(marks.second_gradient - exact_marks.second_gradient), 4e4 * b.steepest * (1e-11 + error));
       fullest = std::max(fullest, f_off / (b.f_error + 1e-12 * exact.value));
       // One and two derivatives more: by a degree less each.
       const double reach = 0.5 * length(g.box.size());

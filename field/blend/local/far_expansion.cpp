@@ -117,12 +117,13 @@ void multiply(Column& by, const Column& factor) {
 
 }  // namespace
 
-FarExpansion::FarExpansion(const Box3& box, bool lifted, double error, double share)
+FarExpansion::FarExpansion(const Box3& box, bool lifted, bool marked, double error, double share)
     : center_(box.center()),
       rho_(0.5 * length(box.size()) * (1 + 1e-12)),
       error_(error),
       share_(share),
-      lifted_(lifted) {}
+      lifted_(lifted),
+      marked_(marked) {}
 
 std::optional<FarExpansion::View> FarExpansion::seen(const Source& s, int exponent) const {
   const Vec3d away = s.at - center_;
@@ -152,6 +153,7 @@ void FarExpansion::add(const Source& s, int exponent, const View& view) {
   b.inverse.of[group][lane] = inverse;
   b.field.of[group][lane] = view.field;
   b.radius.of[group][lane] = s.radius;
+  b.mark.of[group][lane] = s.mark;
   ++b.count;
 
   const double slope = m / view.distance, shrink = (1 + 1e-12) / (1 - 1 / D);
@@ -181,20 +183,31 @@ void FarExpansion::fold() {
   add_to(f_moments_, batch_->field);
   multiply(batch_->radius, batch_->field);
   add_to(h_moments_, batch_->radius);
+  if (marked_) {
+    Column weight = batch_->field;
+    multiply(weight, batch_->mark);
+    add_to(first_moments_, weight);
+    multiply(weight, batch_->mark);
+    add_to(second_moments_, weight);
+  }
   *batch_ = {};
 }
 
 // All sources of one exponent to the polynomials.
 void FarExpansion::expand() {
   if (batch_->count > 0) fold();
-  if (f_moments_.empty()) return;
+  expand(f_moments_, f_);
+  expand(h_moments_, h_);
+  expand(first_moments_, first_);
+  expand(second_moments_, second_);
+}
+
+void FarExpansion::expand(Moments& moments, FarPolynomial::Coefficients& to) const {
+  if (moments.empty()) return;
   const MomentSeries& series = of_exponent(exponent_).series;
-  if (!lifted_) series.complete(f_moments_, degree);
-  if (!lifted_) series.complete(h_moments_, degree);
-  series.add_to(f_, f_moments_, degree);
-  series.add_to(h_, h_moments_, degree);
-  f_moments_.clear();
-  h_moments_.clear();
+  if (!lifted_) series.complete(moments, degree);
+  series.add_to(to, moments, degree);
+  moments.clear();
 }
 
 std::unique_ptr<const FarPolynomial> FarExpansion::polynomial(const FarPolynomial* outer) {
@@ -205,6 +218,12 @@ std::unique_ptr<const FarPolynomial> FarExpansion::polynomial(const FarPolynomia
     bounds += outer->bounds();
   }
   return std::make_unique<const FarPolynomial>(center_, rho_, f_, h_, bounds);
+}
+
+std::unique_ptr<const FarPolynomial> FarExpansion::marks(const FarPolynomial* outer) const {
+  FarPolynomial::Coefficients first = first_, second = second_;
+  if (outer != nullptr) outer->add_to(center_, rho_, first, second);
+  return std::make_unique<const FarPolynomial>(center_, rho_, first, second, FarPolynomial::Bounds{});
 }
 
 }  // namespace marrow

@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "field/blend/bounds/angle/alpha_bounds.h"
+#include "field/blend/bounds/angle/local_contact_angles.h"
 #include "field/blend/bounds/sum/distances_in_reach.h"
 #include "field/blend/bounds/sum/sum_bounds.h"
 #include "field/blend/local/far_expansion.h"
 #include "field/blend/local/source_maker.h"
 #include "field/blend/primitive_visit.h"
+#include "field/blend/radius_marks.h"
 #include "field/kernel/inverse_family.h"
 #include "field/skeleton/distance.h"
 #include "field/skeleton/radii.h"
@@ -31,8 +33,21 @@ BlendField without_primitives(const BlendField& blend) {
   return b;
 }
 
-// Then it is made of sums over all of them, as they are.
-bool angle_is_of_skeletons(const BlendField& blend) { return blend.alpha_varies() && !blend.alpha_source; }
+// Whether the angle is a sum over all skeletons as they are.
+bool angle_is_of_skeletons(const BlendField& blend) {
+  if (!blend.local_contact) return blend.alpha_varies() && !blend.alpha_source;
+  return !blend.distance_segments.empty() || !blend.distance_triangles.empty() || !blend.distance_arcs.empty() ||
+         !blend.cani_hornus_segments.empty();
+}
+
+// Of the contact angle that adapts to radii.
+bool has_marks(const BlendField& blend) { return blend.local_contact && blend.local_contact->adapts_to_radii(); }
+
+bool adapts_to_density(const BlendField& blend) {
+  return blend.local_contact && blend.local_contact->adapts_to_density();
+}
+
+bool is_usable(const SkeletonSample& sum) { return sum.value > 0 && sum.value <= field_ceiling; }
 
 // Those whose support meets the ball around the box.
 template <class Skeleton>
@@ -69,7 +84,8 @@ LocalBlend::LocalBlend(const BlendField& blend, std::shared_ptr<const LocalBlend
       outer_(std::move(outer)),
       correction_(correction_of(blend)),
       rest_(without_primitives(blend)),
-      sources_(blend.degree) {
+      sources_(blend.degree, has_marks(blend)),
+      reference_radius_(outer_ ? outer_->reference_radius_ : reference_radius(blend)) {
   if (!outer_) return;
   f_error_ = outer_->f_error_;
   S_error_ = outer_->S_error_;
@@ -93,15 +109,14 @@ std::shared_ptr<const LocalBlend> LocalBlend::make(const BlendField& blend, std:
     keep_reaching(from.distance_arcs, blend.kernel_shape, box, rest.distance_arcs);
     for (const PointSkeleton& end : distances.ends) rest.points.skeletons.push_back(end);
   } else {
-    SourceMaker maker(blend, box, largest_error, 1 / static_cast<double>(blend.size()));
-    const auto add_all = [&](const auto& list) {
-      for (const auto& s : list.skeletons) maker.add(s);
-    };
-    add_all(from.points);
-    add_all(from.segments);
-    add_all(from.triangles);
-    add_all(from.arcs);
-    for (const PointSkeleton& end : distances.ends) maker.add(end);
+    SourceMaker maker(blend, box, has_marks(blend), largest_error, 1 / static_cast<double>(blend.size()));
+    maker.add(from.points);
+    maker.add(from.segments);
+    maker.add(from.triangles);
+    maker.add(from.arcs);
+    PrimitiveList<PointSkeleton> ends;
+    ends.skeletons = std::move(distances.ends);
+    maker.add(ends);
     rest.points = std::move(maker.rest_points);
     rest.segments = std::move(maker.rest_segments);
     rest.triangles = std::move(maker.rest_triangles);
@@ -114,7 +129,16 @@ std::shared_ptr<const LocalBlend> LocalBlend::make(const BlendField& blend, std:
     rest.distance_arcs = from.distance_arcs;
   }
   rest.cani_hornus_segments = from.cani_hornus_segments;
-  return !made->sources_.empty() || made->far_ || rest.size() < from.size() ? made : outer;
+  const bool fewer_near = made->keep_near(outer.get(), box);
+  return !made->sources_.empty() || made->far_ || rest.size() < from.size() || fewer_near ? made : outer;
+}
+
+// Returns whether some are left out that the box around it keeps.
+bool LocalBlend::keep_near(const LocalBlend* outer, const Box3& box) {
+  if (!adapts_to_density(blend_)) return false;
+  near_ = std::make_unique<const NearSkeletons>(outer != nullptr ? outer->near_->within(box)
+                                                                 : NearSkeletons(blend_).within(box));
+  return near_->size() < (outer != nullptr ? outer->near_->size() : blend_.size());
 }
 
 const LocalBlend& LocalBlend::last() const {
@@ -125,9 +149,9 @@ const LocalBlend& LocalBlend::last() const {
 
 // All sources of the boxes around it anew: into a polynomial, or a list of its own.
 void LocalBlend::fold_far_sources(const Box3& box) {
-  const FarPolynomial* const outer_far = last().far_.get();
+  const FarPolynomial *const outer_far = last().far_.get(), *const outer_marks = last().far_marks_.get();
   const double share = 1 / (sources_of_primitive * static_cast<double>(blend_.size()));
-  FarExpansion expansion(box, blend_.kernel == KernelFamily::Cauchy, largest_error, share);
+  FarExpansion expansion(box, blend_.kernel == KernelFamily::Cauchy, is_marked(), largest_error, share);
   std::vector<std::optional<FarExpansion::View>> views;
   for_each_sums([&](const SourceSums& sums) {
     for (std::size_t i = 0; i < sums.count(); ++i) views.push_back(expansion.seen(sums[i], sums.exponent()));
@@ -137,7 +161,7 @@ void LocalBlend::fold_far_sources(const Box3& box) {
   if (static_cast<double>(far) < enough_far * static_cast<double>(views.size()) ||
       far < (outer_far == nullptr ? polynomial_is_worth : moving_it_is_worth))
     return;
-  SourceLists rest(blend_.degree);
+  SourceLists rest(blend_.degree, is_marked());
   auto view = views.begin();
   for_each_sums([&](const SourceSums& sums) {
     SourceSums& list = rest.with(sums.exponent());
@@ -148,33 +172,80 @@ void LocalBlend::fold_far_sources(const Box3& box) {
       else list.add(sums[i]);
   });
   far_ = expansion.polynomial(outer_far);
+  if (is_marked()) far_marks_ = expansion.marks(outer_marks);
   sources_ = std::move(rest);
   f_error_ += expansion.f_error();
   S_error_ += expansion.S_error();
   outer_ = nullptr;
 }
 
+bool LocalBlend::is_marked() const { return has_marks(blend_); }
+
+template <Derivatives Order>
+SkeletonSample LocalBlend::sum_at(const Vec3d& p, MarkSums& marks) const {
+  const bool marked = is_marked();
+  SkeletonSample sum;
+  for_each_primitive<Order>(rest_, p, [&](const SkeletonSample& s, const auto& list, std::size_t i) {
+    sum += s;
+    if (marked) marks.add(s, radius_mark(list, i, reference_radius_));
+  });
+  for_each_sums([&](const SourceSums& s) {
+    if constexpr (Order == Derivatives::ScaleInvariant) sum += s.value_at(p);
+    else sum += s.at(p).sum;
+    if (marked) marks += s.marks_at(p);
+  });
+  const LocalBlend& outermost = last();
+  if (!outermost.far_) return sum;
+  if constexpr (Order == Derivatives::ScaleInvariant) sum += outermost.far_->value_at(p);
+  else sum += outermost.far_->at(p);
+  if (marked) marks += outermost.far_marks_->marks_at(p);
+  return sum;
+}
+
+Neighbourhood LocalBlend::place_at(const Vec3d& p, const SkeletonSample& sum, const MarkSums& marks) const {
+  const SkeletonSample near = near_ ? near_->at(p) : SkeletonSample{};
+  Neighbourhood place{.field = sum.value,
+                      .field_gradient = sum.gradient,
+                      .spread_gradient = {},
+                      .near_field = near.value,
+                      .near_gradient = near.gradient};
+  if (blend_.local_contact->adapts_to_radii() && is_usable(sum)) set_spread(marks, place);
+  return place;
+}
+
+AlphaSample LocalBlend::angle_at(const Vec3d& p, const SkeletonSample& sum, const MarkSums& marks) const {
+  if (blend_.alpha_source) return blend_.alpha_source->at(p);
+  if (!blend_.local_contact || !is_usable(sum)) return {.value = blend_.alpha};
+  return blend_.local_contact->at(place_at(p, sum, marks));
+}
+
 double LocalBlend::value(const Vec3d& p) const {
-  SkeletonSample sum = sum_of_primitives<Derivatives::ScaleInvariant>(rest_, p);
-  for_each_sums([&](const SourceSums& s) { sum += s.value_at(p); });
-  if (const FarPolynomial* far = last().far_.get()) sum += far->value_at(p);
+  MarkSums marks;
+  const SkeletonSample sum = sum_at<Derivatives::ScaleInvariant>(p, marks);
   const double G = length(sum.si_gradient);
-  if (blend_.alpha_source) return correction_at(blend_, blend_.alpha_source->at(p).value).value(sum.value, G);
-  return correction_.value(sum.value, G);
+  if (!blend_.alpha_varies()) return correction_.value(sum.value, G);
+  return correction_at(blend_, angle_at(p, sum, marks).value).value(sum.value, G);
 }
 
 LocalBlend::Sample LocalBlend::evaluate(const Vec3d& p) const {
-  SkeletonSample sum = sum_of_primitives<Derivatives::Second>(rest_, p);
-  for_each_sums([&](const SourceSums& s) { sum += s.at(p).sum; });
-  if (const FarPolynomial* far = last().far_.get()) sum += far->at(p);
-  const AlphaSample alpha = blend_.alpha_source ? blend_.alpha_source->at(p) : AlphaSample{};
+  MarkSums marks;
+  const SkeletonSample sum = sum_at<Derivatives::Second>(p, marks);
+  const AlphaSample alpha = angle_at(p, sum, marks);
   const double G = length(sum.si_gradient);
-  const Correction::Partials c = blend_.alpha_source ? correction_at(blend_, alpha.value).partials(sum.value, G)
-                                                     : correction_.partials(sum.value, G);
+  const Correction::Partials c = blend_.alpha_varies() ? correction_at(blend_, alpha.value).partials(sum.value, G)
+                                                       : correction_.partials(sum.value, G);
   Vec3d gradient = sum.gradient * c.df;
-  if (blend_.alpha_source) gradient += alpha.gradient * c.dalpha;
+  if (blend_.alpha_varies()) gradient += alpha.gradient * c.dalpha;
   if (c.dG_over_G != 0) gradient += sum.si_jacobian.transposed_times(sum.si_gradient) * c.dG_over_G;
   return {c.value, gradient};
+}
+
+AngleBounds LocalBlend::angles_in(const Box3& box, const SumBounds& sum) const {
+  if (!blend_.local_contact) return alpha_bounds(blend_, sum, box);
+  MarkSums marks;
+  const SkeletonSample middle = sum_at<Derivatives::Second>(sum.center(), marks);
+  const double near_slope = near_ ? near_->log_slope(sum.center(), sum.rho()) : 0;
+  return local_contact_angles(blend_, place_at(sum.center(), middle, marks), near_slope, sum);
 }
 
 BlendBounds LocalBlend::bounds(const Box3& box, Wanted wanted, const Within& within) const {
@@ -182,8 +253,8 @@ BlendBounds LocalBlend::bounds(const Box3& box, Wanted wanted, const Within& wit
   SumBounds sum(rest_, box, wanted, within);
   for_each_sums([&](const SourceSums& s) { sum.add(s); });
   if (const FarPolynomial* far = last().far_.get()) sum.add(*far);
-  if (!blend_.alpha_source) return blend_bounds(blend_, sum, {blend_.alpha, {}}, correction_);
-  const AngleBounds angle = alpha_bounds(blend_, sum, box);
+  if (!blend_.alpha_varies()) return blend_bounds(blend_, sum, {blend_.alpha, {}}, correction_);
+  const AngleBounds angle = angles_in(box, sum);
   return blend_bounds(blend_, sum, angle, correction_at(blend_, angle.value.lo));
 }
 
@@ -207,7 +278,9 @@ std::size_t LocalBlend::source_count() const {
 }
 
 std::size_t LocalBlend::bytes() const {
-  return sizeof *this + sources_.bytes() + rest_.size() * sizeof(ArcSkeleton) + (far_ ? far_->bytes() : 0);
+  return sizeof *this + sources_.bytes() + rest_.size() * sizeof(ArcSkeleton) +
+         (near_ ? sizeof *near_ + near_->size() * sizeof(SegmentSkeleton) : 0) + (far_ ? far_->bytes() : 0) +
+         (far_marks_ ? far_marks_->bytes() : 0);
 }
 
 }  // namespace marrow

@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <memory>
 
+#include "field/blend/angle/local_contact.h"
 #include "field/blend/blend_field.h"
 #include "field/blend/bounds/blend_bounds.h"
 #include "field/blend/correction/correction.h"
+#include "field/blend/local/near_skeletons.h"
 #include "field/blend/sources/far_polynomial.h"
 #include "field/blend/sources/source_sums.h"
 #include "field/math/box3.h"
@@ -16,7 +18,8 @@ namespace marrow {
 /// The field of a blend inside a box, to within a certified error, summed in a fraction of the time. Integrals
 /// under the inverse and the Cauchy kernel become nodes of rules as soon as the box is away from them; those under the
 /// compact kernel are left out where they are 0. Boxes inside the box share its nodes and add their own, until many of
-/// them are so far away that a polynomial stands for these. Immutable.
+/// them are so far away that a polynomial stands for these. A contact angle that adapts to the place is found by sums
+/// of the same sources, with the radii of their skeletons as marks, and by the near skeletons. Immutable.
 class LocalBlend {
  public:
   /// What each primitive may add to the error of f: this much of its own field, as far as that is below 1; all of them
@@ -56,6 +59,14 @@ class LocalBlend {
   /// The one of itself and those around it that stands for all farther out.
   const LocalBlend& last() const;
   void fold_far_sources(const Box3&);
+  bool keep_near(const LocalBlend* outer, const Box3&);
+  bool is_marked() const;
+  /// The sum of what is here and farther out; with marks where there are any.
+  template <Derivatives>
+  SkeletonSample sum_at(const Vec3d& p, MarkSums&) const;
+  Neighbourhood place_at(const Vec3d& p, const SkeletonSample& sum, const MarkSums&) const;
+  AlphaSample angle_at(const Vec3d& p, const SkeletonSample& sum, const MarkSums&) const;
+  AngleBounds angles_in(const Box3&, const SumBounds&) const;
   template <class Visit>
   void for_each_sums(const Visit& visit) const {
     for (const LocalBlend* here = this; here != nullptr; here = here->outer_.get())
@@ -68,8 +79,10 @@ class LocalBlend {
   Correction correction_;
   BlendField rest_;
   SourceLists sources_;
-  std::unique_ptr<const FarPolynomial> far_;
-  double f_error_ = 0, S_error_ = 0;  ///< of all sources, those of outer boxes included
+  std::unique_ptr<const FarPolynomial> far_, far_marks_;
+  std::unique_ptr<const NearSkeletons> near_;  ///< where the angle adapts to density
+  double reference_radius_;                    ///< of the blend
+  double f_error_ = 0, S_error_ = 0;           ///< of all sources, those of outer boxes included
 };
 
 }  // namespace marrow

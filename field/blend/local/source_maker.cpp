@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "field/blend/radius_marks.h"
 #include "field/kernel/inverse_family.h"
 #include "field/kernel/profile.h"
 #include "field/math/elementary.h"
@@ -53,13 +54,15 @@ double least_distance(const auto& s, const Vec3d& p) { return distance_to(s, p);
 
 }  // namespace
 
-SourceMaker::SourceMaker(const BlendField& blend, const Box3& box, double error, double share)
-    : sources(blend.degree),
+SourceMaker::SourceMaker(const BlendField& blend, const Box3& box, bool marked, double error, double share)
+    : sources(blend.degree, marked),
       degree_(blend.degree),
       center_(box.center()),
       rho_(0.5 * length(box.size())),
       error_(error),
-      share_(share) {
+      share_(share),
+      marked_(marked),
+      reference_(reference_radius(blend)) {
   const Kernel kernel = kernel_of(blend);
   const bool is_cauchy = blend.kernel == KernelFamily::Cauchy;
   if (is_cauchy) per_lift_ = 1 / blend.kernel_shape;
@@ -94,11 +97,26 @@ void SourceMaker::emit(SourceSums& out, const Vec3d& at, double weight, double r
   out.add({.at = at,
            .weight = unit_[dimension] * weight * integer_power(radius, degree_ - 1),
            .radius = radius,
-           .lift_squared = lift * lift});
+           .lift_squared = lift * lift,
+           .mark = mark_});
+}
+
+template <class Skeleton, class Add>
+void SourceMaker::add_all(const PrimitiveList<Skeleton>& list, const Add& add) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (marked_) mark_ = radius_mark(list, i, reference_);
+    add(list.skeletons[i]);
+  }
+}
+
+template <class Skeleton>
+void SourceMaker::leave(const Skeleton& s, PrimitiveList<Skeleton>& rest) const {
+  rest.skeletons.push_back(s);
+  if (marked_) rest.log_radii.push_back(mark_);
 }
 
 void SourceMaker::add(const PointSkeleton& s) {
-  if (seen(distance_to(s, center_), s.radius).too_near) rest_points.skeletons.push_back(s);
+  if (seen(distance_to(s, center_), s.radius).too_near) leave(s, rest_points);
   else emit(sources.points, s.at, 1, s.radius, 0);
 }
 
@@ -171,7 +189,7 @@ void SourceMaker::divide(const Skeleton& whole, PrimitiveList<Skeleton>& rest) {
   if (!(measure(whole) > 0)) return;
   if constexpr (std::same_as<Skeleton, TriangleSkeleton>)
     if (most_over_distance * seen(least_distance(whole, center_), least_radius(whole)).lifted < extent(whole)) {
-      rest.skeletons.push_back(whole);
+      leave(whole, rest);
       return;
     }
   std::vector<std::pair<Skeleton, int>> open{{whole, 0}};
@@ -182,15 +200,24 @@ void SourceMaker::divide(const Skeleton& whole, PrimitiveList<Skeleton>& rest) {
     if (!view.too_near && add_part(s, view.lifted)) continue;
     const bool is_short = extent(s) < (view.too_near ? largest * rho_ : shortest * view.lifted);
     if (depth == deepest || is_short) {
-      rest.skeletons.push_back(s);
+      leave(s, rest);
       continue;
     }
     for (const Skeleton& part : parts(s)) open.push_back({part, depth + 1});
   }
 }
 
-void SourceMaker::add(const SegmentSkeleton& s) { divide(s, rest_segments); }
-void SourceMaker::add(const ArcSkeleton& s) { divide(s, rest_arcs); }
-void SourceMaker::add(const TriangleSkeleton& s) { divide(s, rest_triangles); }
+void SourceMaker::add(const PrimitiveList<PointSkeleton>& list) {
+  add_all(list, [&](const PointSkeleton& s) { add(s); });
+}
+void SourceMaker::add(const PrimitiveList<SegmentSkeleton>& list) {
+  add_all(list, [&](const SegmentSkeleton& s) { divide(s, rest_segments); });
+}
+void SourceMaker::add(const PrimitiveList<ArcSkeleton>& list) {
+  add_all(list, [&](const ArcSkeleton& s) { divide(s, rest_arcs); });
+}
+void SourceMaker::add(const PrimitiveList<TriangleSkeleton>& list) {
+  add_all(list, [&](const TriangleSkeleton& s) { divide(s, rest_triangles); });
+}
 
 }  // namespace marrow

@@ -11,13 +11,15 @@ namespace marrow {
 /// For one box: primitives, or parts of them, go to sources where rules are certified, and to a rest where not.
 class SourceMaker {
  public:
-  /// Each primitive adds at most `error` times its field, where that is between `share` and 1.
-  SourceMaker(const BlendField&, const Box3&, double error, double share);
+  /// Each primitive adds at most `error` times its field, where that is between `share` and 1. `marked`: what is made
+  /// has a radius_mark() of the blend.
+  SourceMaker(const BlendField&, const Box3&, bool marked, double error, double share);
 
-  void add(const PointSkeleton&);
-  void add(const SegmentSkeleton&);
-  void add(const ArcSkeleton&);
-  void add(const TriangleSkeleton&);
+  /// All of a list.
+  void add(const PrimitiveList<PointSkeleton>&);
+  void add(const PrimitiveList<SegmentSkeleton>&);
+  void add(const PrimitiveList<ArcSkeleton>&);
+  void add(const PrimitiveList<TriangleSkeleton>&);
 
   SourceLists sources;
   double f_error = 0, S_error = 0;
@@ -36,6 +38,11 @@ class SourceMaker {
   double allowed(double mass, double radius, double distance, int m) const;
   void note(double mass, double radius, double distance, int m, double relative);
   void emit(SourceSums&, const Vec3d& at, double weight, double radius, int dimension) const;
+  template <class Skeleton, class Add>
+  void add_all(const PrimitiveList<Skeleton>&, const Add&);
+  template <class Skeleton>
+  void leave(const Skeleton&, PrimitiveList<Skeleton>& rest) const;
+  void add(const PointSkeleton&);
   template <class Skeleton>
   void divide(const Skeleton&, PrimitiveList<Skeleton>& rest);
   template <class Curve, class Place>
@@ -49,6 +56,9 @@ class SourceMaker {
   double unit_[3];       ///< weight of a unit of measure, by dimension
   Vec3d center_;
   double rho_, error_, share_;
+  bool marked_;
+  double reference_;  ///< radius
+  double mark_ = 0;   ///< of the skeleton that is added
 };
 
 }  // namespace marrow

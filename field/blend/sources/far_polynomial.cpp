@@ -163,6 +163,15 @@ SkeletonSample FarPolynomial::value_at(const Vec3d& p) const {
   return s;
 }
 
+MarkSums FarPolynomial::marks_at(const Vec3d& p) const {
+  Totals t;
+  folds().values(blocks_, (p - center_) / radius_, t);
+  return {.first = of_f(t.value),
+          .second = of_h(t.value),
+          .first_gradient = of_f(t.gradient) / radius_,
+          .second_gradient = of_h(t.gradient) / radius_};
+}
+
 SkeletonSample FarPolynomial::at(const Vec3d& p) const {
   Totals t;
   folds().slopes(blocks_, (p - center_) / radius_, t);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "field/blend/sources/mark_sums.h"
 #include "field/math/box3.h"
 #include "field/math/monomials.h"
 #include "field/skeleton/skeleton_sample.h"
@@ -12,6 +13,7 @@
 namespace marrow {
 
 /// Sums over sources far away, in a ball around a place: f, and h with grad h = grad_S f.   [taylor_remainder.h]
+/// Or, in their places, those of MarkSums; then only marks_at() is asked.
 class FarPolynomial {
  public:
   static constexpr int degree = 13;  ///< of both, so that grad_S f is exact to one less
@@ -37,6 +39,7 @@ class FarPolynomial {
   SkeletonSample at(const Vec3d& p) const;
   /// Only value and si_gradient.
   SkeletonSample value_at(const Vec3d& p) const;
+  MarkSums marks_at(const Vec3d& p) const;
 
   const Bounds& bounds() const { return bounds_; }
   /// Adds it to coefficients about another place, for a ball inside this one.

@@ -11,6 +11,7 @@ namespace {
 
 using Lanes = double __attribute__((vector_size(64)));
 using Group = SourceSums::Group;
+using Marks = SourceSums::Marks;
 static_assert(sizeof(Lanes) == SourceSums::lanes * sizeof(double));
 
 struct Totals {
@@ -103,16 +104,59 @@ void least_128(std::span<const Group> g, int m, const Vec3d& p, double rho, Lane
   fold_least(g, m, p, rho, out);
 }
 
+struct MarkTotals {
+  Lanes first, second, first_gradient[3], second_gradient[3];
+};
+
+// The factor -m of gradients is left to the end.
+[[gnu::always_inline]] inline void fold_marks(std::span<const Group> groups, const Marks* marks, int m, const Vec3d& p,
+                                              MarkTotals& out) {
+  MarkTotals t{};
+  for (const Group& g : groups) {
+    const Lanes x = p.x - load(g.x), y = p.y - load(g.y), z = p.z - load(g.z), mark = load((marks++)->of);
+    const Lanes inverse = 1.0 / (x * x + y * y + z * z + load(g.lift_squared));
+    Lanes f = load(g.weight) * mark;
+    if (m % 2 != 0) {
+      Lanes root = inverse;
+      take_root(root);
+      f *= root;
+    }
+    for (int i = 0; i < m / 2; ++i) f *= inverse;
+    const Lanes squared = f * mark, steep = f * inverse, steep_squared = squared * inverse;
+    t.first += f;
+    t.second += squared;
+    t.first_gradient[0] += steep * x;
+    t.first_gradient[1] += steep * y;
+    t.first_gradient[2] += steep * z;
+    t.second_gradient[0] += steep_squared * x;
+    t.second_gradient[1] += steep_squared * y;
+    t.second_gradient[2] += steep_squared * z;
+  }
+  out = t;
+}
+[[gnu::target("avx512f,prefer-vector-width=512")]] void marks_512(std::span<const Group> g, const Marks* marks, int m,
+                                                                  const Vec3d& p, MarkTotals& out) {
+  fold_marks(g, marks, m, p, out);
+}
+[[gnu::target("avx2")]] void marks_256(std::span<const Group> g, const Marks* marks, int m, const Vec3d& p,
+                                       MarkTotals& out) {
+  fold_marks(g, marks, m, p, out);
+}
+void marks_128(std::span<const Group> g, const Marks* marks, int m, const Vec3d& p, MarkTotals& out) {
+  fold_marks(g, marks, m, p, out);
+}
+
 struct Folds {
   void (*values)(std::span<const Group>, int, const Vec3d&, Totals&);
   void (*slopes)(std::span<const Group>, int, const Vec3d&, Totals&);
   void (*least)(std::span<const Group>, int, const Vec3d&, double, Lanes&);
+  void (*marks)(std::span<const Group>, const Marks*, int, const Vec3d&, MarkTotals&);
 };
 
 const Folds& folds() {
-  static const Folds best = __builtin_cpu_supports("avx512f") ? Folds{values_512, slopes_512, least_512}
-                            : __builtin_cpu_supports("avx2")  ? Folds{values_256, slopes_256, least_256}
-                                                              : Folds{values_128, slopes_128, least_128};
+  static const Folds best = __builtin_cpu_supports("avx512f") ? Folds{values_512, slopes_512, least_512, marks_512}
+                            : __builtin_cpu_supports("avx2")  ? Folds{values_256, slopes_256, least_256, marks_256}
+                                                              : Folds{values_128, slopes_128, least_128, marks_128};
   return best;
 }
 
@@ -129,6 +173,7 @@ Vec3d total(const Lanes (&v)[3]) { return {total(v[0]), total(v[1]), total(v[2])
 void SourceSums::add(const Source& s) {
   const auto lane = static_cast<int>(count_ % lanes);
   if (lane == 0) groups_.emplace_back();
+  if (lane == 0 && marked_) marks_.emplace_back();
   Group& g = groups_.back();
   for (int i = lane; i < lanes; ++i) {
     g.x[i] = s.at.x;
@@ -138,6 +183,7 @@ void SourceSums::add(const Source& s) {
     g.radius[i] = s.radius;
     g.lift_squared[i] = s.lift_squared;
   }
+  if (marked_) marks_.back().of[lane] = s.mark;
   ++count_;
   largest_radius_ = std::max(largest_radius_, s.radius);
 }
@@ -148,7 +194,8 @@ Source SourceSums::operator[](std::size_t i) const {
   return {.at = {g.x[lane], g.y[lane], g.z[lane]},
           .weight = g.weight[lane],
           .radius = g.radius[lane],
-          .lift_squared = g.lift_squared[lane]};
+          .lift_squared = g.lift_squared[lane],
+          .mark = marked_ ? marks_[i / lanes].of[lane] : 0};
 }
 
 SkeletonSample SourceSums::value_at(const Vec3d& p) const {
@@ -158,6 +205,16 @@ SkeletonSample SourceSums::value_at(const Vec3d& p) const {
   s.value = total(t.f);
   s.si_gradient = total(t.S) * -static_cast<double>(exponent_);
   return s;
+}
+
+MarkSums SourceSums::marks_at(const Vec3d& p) const {
+  MarkTotals t;
+  folds().marks(groups_, marks_.data(), exponent_, p, t);
+  const double m = exponent_;
+  return {.first = total(t.first),
+          .second = total(t.second),
+          .first_gradient = total(t.first_gradient) * -m,
+          .second_gradient = total(t.second_gradient) * -m};
 }
 
 double SourceSums::least_within(const Vec3d& p, double rho) const {

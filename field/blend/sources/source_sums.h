@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "field/blend/sources/mark_sums.h"
 #include "field/kernel/inverse_family.h"
 #include "field/skeleton/skeleton_sample.h"
 
@@ -16,6 +17,7 @@ namespace marrow {
 struct Source {
   Vec3d at;
   double weight = 0, radius = 0, lift_squared = 0;
+  double mark = 0;  ///< of its skeleton, where a blend has marks (mark_sums.h)
 };
 
 /// Sums and what bounds their remainders.   [taylor_remainder.h]
@@ -30,11 +32,14 @@ struct SourceSample {
 /// Sources of one exponent m. The same bits on every instruction set.
 class SourceSums {
  public:
-  /// Precondition: exponent >= 2.
-  explicit SourceSums(int exponent) : exponent_(exponent) {}
+  /// Precondition: exponent >= 2. `marked`: whether marks are kept.
+  explicit SourceSums(int exponent, bool marked = false) : exponent_(exponent), marked_(marked) {}
 
   /// Makes room for so many in all.
-  void reserve(std::size_t count) { groups_.reserve((count + lanes - 1) / lanes); }
+  void reserve(std::size_t count) {
+    groups_.reserve((count + lanes - 1) / lanes);
+    if (marked_) marks_.reserve((count + lanes - 1) / lanes);
+  }
   void add(const Source&);
   int exponent() const { return exponent_; }
   std::size_t count() const { return count_; }
@@ -42,12 +47,14 @@ class SourceSums {
   /// The i-th that was added.
   Source operator[](std::size_t i) const;
   double largest_radius() const { return largest_radius_; }
-  std::size_t bytes() const { return groups_.capacity() * sizeof(Group); }
+  std::size_t bytes() const { return groups_.capacity() * sizeof(Group) + marks_.capacity() * sizeof(Marks); }
 
   /// All of it at p.
   SourceSample at(const Vec3d& p) const;
   /// Only value and si_gradient.
   SkeletonSample value_at(const Vec3d& p) const;
+  /// Precondition: marks are kept.
+  MarkSums marks_at(const Vec3d& p) const;
   /// A lower bound of the value within rho of p.
   double least_within(const Vec3d& p, double rho) const;
 
@@ -55,19 +62,26 @@ class SourceSums {
   struct alignas(64) Group {
     double x[lanes], y[lanes], z[lanes], weight[lanes], radius[lanes], lift_squared[lanes];
   };
+  struct alignas(64) Marks {
+    double of[lanes];
+  };
 
  private:
   int exponent_;
+  bool marked_;
   std::size_t count_ = 0;
   double largest_radius_ = 0;
   std::vector<Group> groups_;
+  std::vector<Marks> marks_;  ///< of the groups
 };
 
 /// Sources of points, curves and surfaces, which differ in their exponents.
 struct SourceLists {
-  /// Of a blend of this degree.
-  explicit SourceLists(int degree)
-      : points(kernel_degree(degree, 0)), curves(kernel_degree(degree, 1)), surfaces(kernel_degree(degree, 2)) {}
+  /// Of a blend of this degree; with marks, or without.
+  explicit SourceLists(int degree, bool marked = false)
+      : points(kernel_degree(degree, 0), marked),
+        curves(kernel_degree(degree, 1), marked),
+        surfaces(kernel_degree(degree, 2), marked) {}
 
   SourceSums points, curves, surfaces;
 

@@ -7,6 +7,7 @@
 #include "field/blend/bounds/angle/field_weight.h"
 #include "field/blend/gather.h"
 #include "field/blend/primitive_visit.h"
+#include "field/blend/radius_marks.h"
 #include "field/math/elementary.h"
 #include "field/skeleton/distance.h"
 #include "field/skeleton/parts.h"
@@ -41,7 +42,7 @@ Terms terms_of(const BlendField& blend, const SumBounds& sum, const std::vector<
           weight_of({.sample = near_field, .distance = distance_to(skeleton, sum.center()), .m = near_power(skeleton)},
                     sum.rho()));
     terms.fields.push_back(weight_of(part, sum.rho()));
-    terms.radii.push_back(log(mean_radius(skeleton)));
+    terms.radii.push_back(radius_mark(list, i, 1));
   });
   return terms;
 }
@@ -155,21 +156,55 @@ MeanChange angle_change(const LocalContact::Within& rule, const Told& spread, co
                      times(rule.by_crowd, crowd.bend) + times(rule.by_crowd_twice, crowd.slope * crowd.slope)};
 }
 
+bool is_known(const SumBounds& sum) {
+  const Interval f = sum.f();
+  return !sum.unbounded() && sum.takeovers().empty() && f.lo > least_field && f.hi < largest_field;
+}
+
+Interval all_angles(const BlendField& blend) { return hull(blend.local_contact->range(), blend.alpha); }
+AngleBounds unknown_angles(const BlendField& blend, const SumBounds& sum) {
+  return angles_around({}, {inf, inf}, all_angles(blend), sum);
+}
+
+// What the rule is told.
+struct ToldOfBoth {
+  Told spread{.value = 0}, crowd{.value = 1};
+};
+
+ToldOfBoth by_steepest(const LocalContact& rule, const Neighbourhood& place, const Steepest& steepest, double rho) {
+  ToldOfBoth told;
+  if (rule.adapts_to_radii()) told.spread = spread_by_steepest(place.spread, steepest.field, rho);
+  if (rule.adapts_to_density()) told.crowd = crowd_by_steepest(rule, place, steepest, rho);
+  return told;
+}
+
+AngleBounds angles_by(const BlendField& blend, const Neighbourhood& place, const ToldOfBoth& told,
+                      const SumBounds& sum) {
+  const LocalContact& rule = *blend.local_contact;
+  const LocalContact::Within within = rule.within(told.spread.value, told.crowd.value);
+  return angles_around(rule.at(place), angle_change(within, told.spread, told.crowd),
+                       clamped(within.alpha, all_angles(blend)), sum);
+}
+
 }  // namespace
+
+AngleBounds local_contact_angles(const BlendField& blend, const Neighbourhood& place, double near_log_slope,
+                                 const SumBounds& sum) {
+  if (!is_known(sum)) return unknown_angles(blend, sum);
+  const Steepest steepest{sum.log_slope(), near_log_slope};
+  return angles_by(blend, place, by_steepest(*blend.local_contact, place, steepest, sum.rho()), sum);
+}
 
 AngleBounds local_contact_angles(const BlendField& blend, const SumBounds& sum) {
   // Where logarithms may change by more over the box, how fast their slopes change tells nothing.
   constexpr double most_change = 0.5;
   const LocalContact& rule = *blend.local_contact;
-  const Interval range = hull(rule.range(), blend.alpha), f = sum.f();
   const double rho = sum.rho();
-  if (sum.unbounded() || !sum.takeovers().empty() || !(f.lo > least_field && f.hi < largest_field))
-    return angles_around({}, {inf, inf}, range, sum);
+  if (!is_known(sum)) return unknown_angles(blend, sum);
   const auto [place, near] = parts_around(blend, sum.center(), sum.parts());
   const Steepest steepest{sum.log_slope(), rule.adapts_to_density() ? near_log_slope(blend, sum) : 0};
-  Told spread{.value = 0}, crowd{.value = 1};
-  if (rule.adapts_to_radii()) spread = spread_by_steepest(place.spread, steepest.field, rho);
-  if (rule.adapts_to_density()) crowd = crowd_by_steepest(rule, place, steepest, rho);
+  ToldOfBoth told = by_steepest(rule, place, steepest, rho);
+  auto& [spread, crowd] = told;
   // Under the compact kernel they have no bound.
   const double changes = std::max(steepest.field < inf ? steepest.field : 0, steepest.near) * rho;
   if (changes < most_change) {
@@ -181,8 +216,7 @@ AngleBounds local_contact_angles(const BlendField& blend, const SumBounds& sum) 
     if (rule.adapts_to_density() && by_logarithms && crowd.slope < inf)
       crowd = crowd_by_logarithms(rule, place, log_of_sum(common, weights), terms.near, crowd, rho);
   }
-  const LocalContact::Within within = rule.within(spread.value, crowd.value);
-  return angles_around(rule.at(place), angle_change(within, spread, crowd), clamped(within.alpha, range), sum);
+  return angles_by(blend, place, told, sum);
 }
 
 }  // namespace marrow

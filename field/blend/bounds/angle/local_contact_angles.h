@@ -1,6 +1,7 @@
 // Bounds of the contact angle that adapts to the place; internal to blend/.
 #pragma once
 
+#include "field/blend/angle/local_contact.h"
 #include "field/blend/bounds/angle/alpha_bounds.h"
 
 namespace marrow {
@@ -15,5 +16,8 @@ namespace marrow {
 /// order; near skeletons, and where one segment of a strand by distance takes over from another, all angles of the rule
 /// with any gradient.
 AngleBounds local_contact_angles(const BlendField&, const SumBounds&);
+/// The same to first order, where sums have no parts: from what the rule is told in the middle, and |grad ln| of near
+/// fields at most.
+AngleBounds local_contact_angles(const BlendField&, const Neighbourhood&, double near_log_slope, const SumBounds&);
 
 }  // namespace marrow
