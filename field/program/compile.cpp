@@ -76,6 +76,10 @@ class Compiler {
                             [&](const Transform& t) {
                               open.push_back({t.of, here.from_node * t.parent_from_child});
                             },
+                            [&](const GeneralNode& n) {
+                              if (const auto map = placement_of(n)) open.push_back({n.of[0], here.from_node * *map});
+                              else fields.push_back(here);
+                            },
                             [&](const auto&) { fields.push_back(here); }},
                  description_[here.node].what);
     }

@@ -1,5 +1,6 @@
 #include "field/program/simplify.h"
 
+#include <cmath>
 #include <variant>
 #include <vector>
 
@@ -45,6 +46,13 @@ const PointSkeleton* lone_point(const FieldNode& node) {
   const auto* primitive = std::get_if<Primitive>(&node.what);
   if (primitive == nullptr || primitive->model == SkeletonModel::CaniHornus) return nullptr;
   return std::get_if<PointSkeleton>(&primitive->skeleton);
+}
+
+std::optional<Affine> placement_of(const GeneralNode& node) {
+  constexpr double most_sheared = 100;
+  const auto* shear = std::get_if<Shear>(&node.node->node);
+  if (shear == nullptr || !(std::fabs(shear->amount) <= most_sheared)) return std::nullopt;
+  return shear->parent_from_child();
 }
 
 Absorbs absorbs(const FieldNode& parent, const FieldNode& child) {

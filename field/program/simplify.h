@@ -4,11 +4,16 @@
 #include <optional>
 
 #include "field/description/field_node.h"
+#include "field/math/affine.h"
 
 namespace marrow {
 
 /// A lone point, that is a blend of one with the defaults: its field is (radius / distance)^3.
 const PointSkeleton* lone_point(const FieldNode&);
+
+/// Where a general node places its only child, if it does no more than that: a shear, by no more than 100, as boxes
+/// around what slides farther tell little.
+std::optional<Affine> placement_of(const GeneralNode&);
 
 /// Whether the parent may take the operands of a child in the place of the child itself: f(f(a, b), c) = f(a, b, c).
 enum class Absorbs {

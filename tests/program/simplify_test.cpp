@@ -21,6 +21,17 @@ FieldNodeId general(FieldDescription& field, AnyNode node, std::vector<FieldNode
   return field.add(placed);
 }
 
+FieldNodeId skeleton(FieldDescription& field, const auto& skeleton) {
+  Primitive primitive;
+  primitive.skeleton = skeleton;
+  return field.add({.what = primitive, .where = {}});
+}
+
+FieldDescription with_root(FieldDescription field, FieldNodeId root) {
+  field.root = root;
+  return field;
+}
+
 Sphere random_ball(Random& random) {
   Sphere s;
   s.center = random.vector(1.2);
@@ -112,6 +123,42 @@ TEST(Simplify, PlacementsOfPlacementsAreOne) {
   ASSERT_TRUE(program);
   EXPECT_EQ(program->trees()[0].records().size(), 3u);
   EXPECT_NEAR(value(*program, {2, 0, 0}), 1, 1e-12);
+}
+
+// So that blends below it have a tracer of their own.
+TEST(Simplify, AShearPlacesWhatItSlides) {
+  Random random(2026112903);
+  for (int round = 0; round < 50; ++round) {
+    const Shear shear{random.vector(1), normalize(random.vector(1)), normalize(random.vector(1)),
+                      random.between(-3, 3)};
+    if (!shear.problem(1).empty()) continue;
+    FieldDescription field;
+    Blend blend;
+    blend.of = {skeleton(field, PointSkeleton{{0, 0, 0}, 0.5}),
+                skeleton(field, SegmentSkeleton{{0.4, 0, 0}, {1, 0.5, 0}, 0.3, 0.2})};
+    const FieldNodeId pair = field.add({.what = blend, .where = {}});
+    const auto alone = compile(with_root(field, pair));
+    const FieldNodeId sheared = general(field, shear, {pair});
+    const auto placed = compile(with_root(field, sheared));
+    ASSERT_TRUE(alone && placed);
+    EXPECT_EQ(placed->parts().size(), 1u);
+    EXPECT_TRUE(placed->trees().empty());
+    for (int i = 0; i < 20; ++i) {
+      const Vec3d p = random.vector(2);
+      const double wanted = value(*alone, shear.child_point(p));
+      EXPECT_NEAR(value(*placed, p), wanted, 1e-11 * (1 + wanted));
+    }
+  }
+}
+
+TEST(Simplify, AShearBeyondMeasureStaysANode) {
+  FieldDescription field;
+  Shear shear;
+  shear.amount = 1e4;
+  field.root = general(field, shear, {skeleton(field, PointSkeleton{{0, 0, 0}, 0.5})});
+  const auto program = compile(field);
+  ASSERT_TRUE(program);
+  EXPECT_TRUE(program->parts().empty());
 }
 
 // A difference is at most 2, so that of a chain of cuts that are elsewhere one is left, even where the first field is

@@ -1,8 +1,10 @@
 // Slides the planes across an axis.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
+#include "field/math/affine.h"
 #include "field/math/box3.h"
 #include "field/number/functions.h"
 #include "field/tree/node_info.h"
@@ -26,6 +28,13 @@ struct Shear {
     return marrow::length(across()) > 1e-6 ? "" : "toward must not point along the axis";
   }
   Box3 support(const Box3& child) const;
+
+  /// The same as a placement of the child.
+  Affine parent_from_child() const {
+    Affine map = Affine::translate(step() * -dot(center, axis.vec()));
+    for (std::size_t k = 0; k < 3; ++k) map.columns[k] += step() * axis.vec()[k];
+    return map;
+  }
 
   template <Number X>
   Vec3<X> child_point(const Vec3<X>& p) const {
