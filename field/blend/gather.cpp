@@ -13,8 +13,6 @@
 namespace marrow {
 namespace {
 
-bool is_usable(const SkeletonSample& sum) { return sum.value > 0 && sum.value <= field_ceiling; }
-
 template <class Skeleton>
 Shares shares_of(const BlendField& blend, const SkeletonSample& s, const PrimitiveList<Skeleton>& list, std::size_t i,
                  const Vec3d& p) {
@@ -116,13 +114,7 @@ Neighbourhood told(const BlendField& blend, const EachNear& each_near, SkeletonS
     if (rule.adapts_to_radii()) marks.add(s, radius_mark(list, i, reference));
     near += n;
   });
-  Neighbourhood place{.field = sum.value,
-                      .field_gradient = sum.gradient,
-                      .spread_gradient = {},
-                      .near_field = near.value,
-                      .near_gradient = near.gradient};
-  if (rule.adapts_to_radii() && is_usable(sum)) set_spread(marks, place);
-  return place;
+  return neighbourhood(rule, sum, marks, near);
 }
 
 SkeletonSample near_field_for(const LocalContact& rule, const auto& skeleton, const Vec3d& p) {

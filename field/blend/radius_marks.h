@@ -1,4 +1,4 @@
-// The logarithms of radii as marks of skeletons, whose variance is the spread of angle/local_contact.h; internal to
+// The logarithms of radii as marks of skeletons, and what angle/local_contact.h is told by sums of these; internal to
 // blend/.
 #pragma once
 
@@ -26,13 +26,23 @@ double radius_mark(const PrimitiveList<Skeleton>& list, std::size_t i, double re
   return list.log_radii.empty() ? log(mean_radius(list.skeletons[i]) / reference) : list.log_radii[i];
 }
 
-/// Sets the spread, 4 times the variance, by the field and its gradient. Precondition: that field is above 0.
-inline void set_spread(const MarkSums& marks, Neighbourhood& place) {
-  const double f = place.field, mean = marks.first / f, mean_square = marks.second / f;
-  const Vec3d mean_gradient = (marks.first_gradient - place.field_gradient * mean) / f;
+/// Whether a sum tells means over its skeletons.
+inline bool is_usable(const SkeletonSample& sum) { return sum.value > 0 && sum.value <= field_ceiling; }
+
+/// By sums of fields, of fields with marks, and of near fields, at one place; the last two as far as the rule asks.
+inline Neighbourhood neighbourhood(const LocalContact& rule, const SkeletonSample& sum, const MarkSums& marks,
+                                   const SkeletonSample& near) {
+  Neighbourhood place{.field = sum.value,
+                      .field_gradient = sum.gradient,
+                      .spread_gradient = {},
+                      .near_field = near.value,
+                      .near_gradient = near.gradient};
+  if (!rule.adapts_to_radii() || !is_usable(sum)) return place;
+  const double f = sum.value, mean = marks.first / f, mean_square = marks.second / f;
+  const Vec3d mean_gradient = (marks.first_gradient - sum.gradient * mean) / f;
   place.spread = 4 * (mean_square - mean * mean);
-  place.spread_gradient =
-      ((marks.second_gradient - place.field_gradient * mean_square) / f - mean_gradient * (2 * mean)) * 4.0;
+  place.spread_gradient = ((marks.second_gradient - sum.gradient * mean_square) / f - mean_gradient * (2 * mean)) * 4.0;
+  return place;
 }
 
 }  // namespace marrow

@@ -1,7 +1,9 @@
 // Fields of high degree fall so fast that what is little in radii is much in the field: hits are judged by the field.
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <iostream>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -32,47 +34,41 @@ BlendField nearly_parallel_segments(Random& random, int degree) {
   return blend;
 }
 
-// Of hits that do not graze.
-double largest_excess(const BlendField& blend, int rays, Random& random, int& hits) {
-  const auto tracer = std::move(*BlendTracer::make(blend, {}));
+// The largest |C - 1| at hits that do not graze, of so many scenes of each degree.
+double largest_excess(BlendField (*draw)(Random&, int), std::initializer_list<int> degrees, int scenes, int& hits) {
+  Random random(20261129);
   double largest = 0;
-  for (int i = 0; i < rays; ++i) {
-    const Vec3d eye = random_direction(random) * 4.0;
-    const Ray ray{eye, normalize(random.vector(0.6) - eye)};
-    const auto t = first_hit(*tracer, ray);
-    if (!t) continue;
-    const BlendSample exact = evaluate(blend, ray.at(*t));
-    if (!(dot(exact.corrected_gradient, ray.direction) > 0.1 * length(exact.corrected_gradient))) continue;
-    ++hits;
-    largest = std::max(largest, std::fabs(exact.corrected - 1));
-  }
+  for (const int degree : degrees)
+    for (int scene = 0; scene < scenes; ++scene) {
+      const BlendField blend = draw(random, degree);
+      const auto tracer = std::move(*BlendTracer::make(blend, {}));
+      for (int i = 0; i < 1000; ++i) {
+        const Vec3d eye = random_direction(random) * 4.0;
+        const Ray ray{eye, normalize(random.vector(0.6) - eye)};
+        const auto t = first_hit(*tracer, ray);
+        if (!t) continue;
+        const BlendSample exact = evaluate(blend, ray.at(*t));
+        if (!(dot(exact.corrected_gradient, ray.direction) > 0.1 * length(exact.corrected_gradient))) continue;
+        ++hits;
+        largest = std::max(largest, std::fabs(exact.corrected - 1));
+      }
+    }
+  std::cout << "  " << hits << " hits; the field there is off 1 by " << largest << '\n';
   return largest;
 }
 
 // The last step to the root took as long a way as at degree 4: C was off by up to 1e-4.
 TEST(HighDegrees, HitsLieOnTheSurface) {
-  Random random(2026112901);
   int hits = 0;
-  double largest = 0;
-  for (const int degree : {11, 14, 17, 20})
-    for (int scene = 0; scene < 4; ++scene)
-      largest = std::max(largest, largest_excess(crowded_points(random, degree), 1000, random, hits));
-  std::cout << "  " << hits << " hits; the field there is off 1 by " << largest << '\n';
+  EXPECT_LT(largest_excess(crowded_points, {11, 14, 17, 20}, 4, hits), 1e-5);
   EXPECT_GT(hits, 5000);
-  EXPECT_LT(largest, 1e-5);
 }
 
 // And it began at a sample that had not asked for the angle of its place.
 TEST(HighDegrees, HitsLieOnTheSurfaceWhereEachSkeletonHasItsAngle) {
-  Random random(2026112902);
   int hits = 0;
-  double largest = 0;
-  for (const int degree : {8, 13, 20})
-    for (int scene = 0; scene < 2; ++scene)
-      largest = std::max(largest, largest_excess(nearly_parallel_segments(random, degree), 2000, random, hits));
-  std::cout << "  " << hits << " hits; the field there is off 1 by " << largest << '\n';
+  EXPECT_LT(largest_excess(nearly_parallel_segments, {8, 13, 20}, 4, hits), 1e-5);
   EXPECT_GT(hits, 500);
-  EXPECT_LT(largest, 1e-5);
 }
 
 }  // namespace

@@ -47,8 +47,6 @@ bool adapts_to_density(const BlendField& blend) {
   return blend.local_contact && blend.local_contact->adapts_to_density();
 }
 
-bool is_usable(const SkeletonSample& sum) { return sum.value > 0 && sum.value <= field_ceiling; }
-
 // Those whose support meets the ball around the box.
 template <class Skeleton>
 void keep_reaching(const PrimitiveList<Skeleton>& from, double support, const Box3& box, PrimitiveList<Skeleton>& to) {
@@ -203,14 +201,7 @@ SkeletonSample LocalBlend::sum_at(const Vec3d& p, MarkSums& marks) const {
 }
 
 Neighbourhood LocalBlend::place_at(const Vec3d& p, const SkeletonSample& sum, const MarkSums& marks) const {
-  const SkeletonSample near = near_ ? near_->at(p) : SkeletonSample{};
-  Neighbourhood place{.field = sum.value,
-                      .field_gradient = sum.gradient,
-                      .spread_gradient = {},
-                      .near_field = near.value,
-                      .near_gradient = near.gradient};
-  if (blend_.local_contact->adapts_to_radii() && is_usable(sum)) set_spread(marks, place);
-  return place;
+  return neighbourhood(*blend_.local_contact, sum, marks, near_ ? near_->at(p) : SkeletonSample{});
 }
 
 AlphaSample LocalBlend::angle_at(const Vec3d& p, const SkeletonSample& sum, const MarkSums& marks) const {

@@ -196,9 +196,9 @@ struct Search {
 
   // Whether a sample tells the field of its place. Where skeletons have an angle each and the ends of their range tell
   // nearly the same it tells that of one end.
-  static Mask is_told(const Sample& p) {
+  static Mask is_told([[maybe_unused]] const Sample& p) {
     if constexpr (Rule == Angle::Mean) return VariedAngle::known(p);
-    else return p.t == p.t;
+    else return !Mask{};
   }
 
   // The root between two samples near by, by the cubic through both, or Newton's from the last outside one, when it is
