@@ -13,6 +13,7 @@
 
 #include "field/base/overloaded.h"
 #include "field/program/contact_angles.h"
+#include "field/program/crisp_surface.h"
 #include "field/program/field_program.h"
 #include "field/program/flattener.h"
 #include "field/program/ramped_field.h"
@@ -41,8 +42,8 @@ class Compiler {
   explicit Compiler(const FieldDescription& description)
       : description_(description), max_placements_(description.nodes.size() + max_shared_placements) {}
 
+  /// Precondition: the description is valid.
   Result<FieldProgram> run() {
-    if (Diagnostics wrong = validate(description_); !wrong.empty()) return wrong;
     find_shared();
     return run_from({description_.root, Affine{}});
   }
@@ -315,6 +316,15 @@ class Compiler {
 
 }  // namespace
 
-Result<FieldProgram> compile(const FieldDescription& description) { return Compiler(description).run(); }
+Result<FieldProgram> compile(const FieldDescription& description) {
+  if (Diagnostics wrong = validate(description); !wrong.empty()) return wrong;
+  return Compiler(description).run();
+}
+
+Result<FieldProgram> compile_surface(const FieldDescription& description) {
+  if (Diagnostics wrong = validate(description); !wrong.empty()) return wrong;
+  const auto crisp = crisp_surface(description);
+  return Compiler(crisp ? *crisp : description).run();
+}
 
 }  // namespace marrow

@@ -52,6 +52,10 @@ class FieldProgram {
 /// similarities, fields that are no skeletons inside a blend. 10^6 nodes take a fraction of a second.
 Result<FieldProgram> compile(const FieldDescription&);
 
+/// Of a field with the same surface, for who asks for no more than that: elsewhere it may have other values, as sharp
+/// set operations are crisp ones then, whose operands are traced one by one.
+Result<FieldProgram> compile_surface(const FieldDescription&);
+
 struct FieldSample {
   double value = 0;
   Vec3d gradient{};       ///< d value / d world position; 0 on a skeleton

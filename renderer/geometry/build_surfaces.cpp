@@ -90,7 +90,7 @@ class Builder {
  private:
   // A tracer has to know of all placements before it is made.
   Compiled compiled(const FieldDescription& description) {
-    auto program = compile(description);
+    auto program = compile_surface(description);
     if (!program) {
       problems.insert(problems.end(), program.why().begin(), program.why().end());
       return {};

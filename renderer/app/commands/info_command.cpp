@@ -42,12 +42,14 @@ const char* kind_of(const MaterialDescription& material) {
 }
 
 // What does not go through the tracer of blends, and why: what is slow of a scene is found here.
-Json general_parts(const FieldProgram& program) {
+Json general_parts(const FieldDescription& field) {
   std::map<std::string, std::size_t> reasons;
-  for (const PlacedBlend& part : program.parts())
-    if (const std::string reason = untraceable_part(part.blend); !reason.empty()) ++reasons[reason];
-  for (const FieldTree& tree : program.trees())
-    if (take_apart(tree).rest) ++reasons["operators, warps and bounded primitives"];
+  if (const auto surface = compile_surface(field)) {
+    for (const PlacedBlend& part : surface->parts())
+      if (const std::string reason = untraceable_part(part.blend); !reason.empty()) ++reasons[reason];
+    for (const FieldTree& tree : surface->trees())
+      if (take_apart(tree).rest) ++reasons["operators, warps and bounded primitives"];
+  }
   Json parts = Json::array();
   for (const auto& [reason, count] : reasons) parts.push_back({{"parts", count}, {"because", reason}});
   return parts;
@@ -55,12 +57,12 @@ Json general_parts(const FieldProgram& program) {
 
 Json object_info(const ObjectDescription& object, const FieldObject* field) {
   Json info{{"name", object.name}};
-  std::visit(Overloaded{[&](const FieldDescription&) {
+  std::visit(Overloaded{[&](const FieldDescription& description) {
                           info["kind"] = "field";
                           info["primitives"] = field ? primitive_count(field->program) : 0;
                           info["blends"] = field ? field->program.parts().size() : 0;
                           info["extent"] = field ? corners(extent(field->program)) : nullptr;
-                          info["general_tracer"] = field ? general_parts(field->program) : Json::array();
+                          info["general_tracer"] = field ? general_parts(description) : Json::array();
                         },
                         [&](const PlaneShape&) { info["kind"] = "plane"; },
                         [&](const MeshShape& mesh) {
