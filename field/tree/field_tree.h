@@ -62,8 +62,16 @@ X value(const FieldTree&, const Vec3<X>& p, std::uint32_t record = FieldTree::wh
 /// The same field inside a box, with less: nodes that are 0 there are gone, and so are operands that never count.
 /// A tree without records is 0 all over the box.
 FieldTree restricted(const FieldTree&, const Box3&, std::uint32_t record = FieldTree::whole);
+/// The same, with bounds of the field in the box.
+struct BoundedTree {
+  FieldTree tree;
+  Interval value;
+};
+BoundedTree restricted_and_bounded(const FieldTree&, const Box3&);
 /// The same with blends summed as local_blend.h does, to within its certified error.
 FieldTree localized(const FieldTree&, const Box3&, std::uint32_t record = FieldTree::whole);
+/// Operands of operators that leave out those that do not count in a part of space.
+std::size_t operands_that_may_go(const FieldTree&);
 /// Whether anything of it lies below a warp other than a placement.
 bool is_warped(const FieldTree&);
 /// Whether sums over skeletons that are too near to be summed so take most of the time of any of its blends.

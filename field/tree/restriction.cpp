@@ -82,7 +82,8 @@ class Restriction {
           else if constexpr (std::same_as<Node, Intersection>)
             keep_least(children, [](const Part& c) { return c.value; });
           else if constexpr (std::same_as<Node, Difference>) keep_rest(children);
-          else if constexpr (is_any_of<Node, SoftUnion, SoftIntersection>) keep_joined(n, children);
+          else if constexpr (is_any_of<Node, SoftUnion, SoftIntersection, SharpUnion, SharpIntersection>)
+            keep_joined(n, children);
           else if constexpr (is_any_of<Node, SoftDifference, SharpDifference>) keep_touching(n, children);
           else if constexpr (std::same_as<Node, Contact>) keep_in_contact(n, children);
           else if constexpr (ignores_zeros<Node>)
@@ -146,9 +147,9 @@ class Restriction {
   void keep_in_contact(const Contact& node, std::span<const Part> children) {
     values_.clear();
     for (const Part& c : children) values_.push_back(c.value);
-    const auto only = node.only(values_);
-    if (only && children[*only].record != Part::none) return void(kept_.push_back(children[*only]));
-    for (const Part& c : children) kept_.push_back(in_place(c));
+    const std::vector<bool> counts = node.counts(values_);
+    for (std::size_t i = 0; i < children.size(); ++i)
+      if (counts[i]) kept_.push_back(in_place(children[i]));
   }
 
   // What is folded onto the first operand without touching it anywhere in the box.
@@ -187,7 +188,7 @@ class Restriction {
   std::uint32_t zero_ = Part::none;
 };
 
-FieldTree restriction(const FieldTree& tree, const Box3& box, std::uint32_t below, bool with_local_blends) {
+BoundedTree restriction(const FieldTree& tree, const Box3& box, std::uint32_t below, bool with_local_blends) {
   const Vec3<Interval> p = places_in(box);
   Restriction restriction(tree, with_local_blends);
   tree::Machine<Interval, Part> machine;
@@ -196,17 +197,35 @@ FieldTree restriction(const FieldTree& tree, const Box3& box, std::uint32_t belo
                   [&](std::uint32_t record, const tree::Place<Interval>& at, std::span<const Part> children) {
                     return restriction.add(record, at.p, children);
                   });
-  return std::move(restriction).tree(root.record);
+  return {std::move(restriction).tree(root.record), root.value};
 }
 
 }  // namespace
 
+std::size_t operands_that_may_go(const FieldTree& tree) {
+  std::size_t count = 0;
+  for (const FieldTree::Record& r : tree.records()) {
+    const bool leaves_out = std::visit(
+        []<class Node>(const Node&) {
+          return is_any_of<Node, CrispUnion, Intersection, Difference, SoftUnion, SoftIntersection, SoftDifference,
+                           SharpUnion, SharpIntersection, SharpDifference, Contact>;
+        },
+        tree.node(r));
+    if (leaves_out) count += r.child_count;
+  }
+  return count;
+}
+
 FieldTree restricted(const FieldTree& tree, const Box3& box, std::uint32_t below) {
-  return restriction(tree, box, below, false);
+  return restriction(tree, box, below, false).tree;
+}
+
+BoundedTree restricted_and_bounded(const FieldTree& tree, const Box3& box) {
+  return restriction(tree, box, FieldTree::whole, false);
 }
 
 FieldTree localized(const FieldTree& tree, const Box3& box, std::uint32_t below) {
-  return restriction(tree, box, below, true);
+  return restriction(tree, box, below, true).tree;
 }
 
 }  // namespace marrow

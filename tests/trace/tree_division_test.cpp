@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "field/program/field_program.h"
+#include "field/trace/general/tree_cell.h"
 #include "field/trace/general/tree_tracer.h"
+#include "field/tree/any_node.h"
 #include "tests/trace/large_cells.h"
 #include "tests/trace/traced_trees.h"
 
@@ -68,6 +71,36 @@ TEST(TreeDivision, CellsAreSmallerWhereMoreSamplesCome) {
   EXPECT_LT(once, sixteen);
   EXPECT_EQ(unknown, sixteen);
   EXPECT_LT(sixteen, often);
+}
+
+// A hundred bodies, of which few are near any place: cells that few rays meet still leave out the others.
+TEST(TreeDivision, ManyOperandsAreLeftOutWhereRaysAreFewToo) {
+  Random random(2026112909);
+  for (const AnyNode& operation : {AnyNode{SoftUnion{}}, AnyNode{Contact{}}}) {
+    FieldDescription field;
+    std::vector<FieldNodeId> bodies;
+    for (int i = 0; i < 100; ++i) {
+      const Vec3d at{1.6 * (i % 10 - 4.5), 1.6 * (i / 10 - 4.5), random.between(-0.2, 0.2)};
+      Blend pair;
+      for (const double side : {-0.3, 0.3}) {
+        Primitive ball;
+        ball.skeleton = PointSkeleton{at + Vec3d{side, 0, 0}, 0.3};
+        pair.of.push_back(field.add({.what = ball, .where = {}}));
+      }
+      bodies.push_back(field.add({.what = pair, .where = {}}));
+    }
+    field.root = field.add({.what = GeneralNode{.node = boxed(operation), .of = bodies, .material = {}}, .where = {}});
+    const auto program = compile(field);
+    ASSERT_TRUE(program);
+    const FieldTree& tree = program->trees()[0];
+    const TreeDivision division{.lent = nullptr, .spacing = hardly_a_ray()};
+    const auto root = TreeCell::root(tree, surface_bounds(tree), tree.root(), division);
+    for (const FieldNodeId body : bodies) {
+      const auto& ball = std::get<Primitive>(field[std::get<Blend>(field[body].what).of[0]].what);
+      const Vec3d surface = std::get<PointSkeleton>(ball.skeleton).at + Vec3d{0, 0, 0.3};
+      EXPECT_LE(root->leaf_at(surface).tree().records().size(), 9u) << info_of(operation).name;
+    }
+  }
 }
 
 }  // namespace

@@ -12,11 +12,11 @@ namespace marrow {
 namespace {
 
 // 2^6 cells along the longest side: finer cells cost more to make than they save. Deeper only below warps, which make
-// searches dearer, where a tree of many nodes goes on getting smaller, or a blend still has skeletons that are too near
-// for sums over nodes.
-constexpr int max_level = 6, max_level_of_warped = 7, max_level_of_leaf = 5, max_level_near = 11,
+// searches dearer, where a tree of many nodes goes on getting smaller, operators still have many operands that may not
+// count, or a blend still has skeletons that are too near for sums over nodes.
+constexpr int max_level = 6, max_level_of_warped = 7, max_level_of_leaf = 5, max_level_of_list = 8, max_level_near = 11,
               max_level_of_many = 24;
-constexpr std::size_t many_records = 64;
+constexpr std::size_t many_records = 64, few_operands = 8;
 // Cells of that level and deeper need more rays than so many of a camera in the half side (README). Where samples are
 // not known they are taken to be as many as a picture mostly has.
 constexpr int min_level_of_few_rays = 4;
@@ -31,10 +31,13 @@ bool excludes_zero(const Interval& x) { return x.lo > 0 || x.hi < 0; }
 // Of a cell, with some room to where its tree ends to hold.
 Box3 where_it_holds(const Box3& cell) { return cell.padded(0.25 * validity * cell.size().x); }
 
+bool is_list(const FieldTree& tree) { return operands_that_may_go(tree) > few_operands; }
+
 bool is_fine_enough(const FieldTree& tree, bool shrinks, bool one_sheet, int level) {
   const std::size_t records = tree.records().size();
   if (records > many_records && shrinks && level < max_level_of_many) return false;
   if (level < max_level_near && is_mostly_near(tree)) return false;
+  if (level < max_level_of_list && is_list(tree)) return false;
   const int most = records <= 1 ? max_level_of_leaf : is_warped(tree) ? max_level_of_warped : max_level;
   return level >= most || (one_sheet && level >= 2);
 }
@@ -90,16 +93,19 @@ std::unique_ptr<const TreeCell> TreeCell::make_octant(std::size_t i) const {
       new TreeCell(octant_center(center_, half_, static_cast<int>(i)), half_ / 2, level_ + 1, division_));
   const Box3 around = cell->box().padded(cell->half_ * validity);
   if (division_.lent != nullptr && division_.lent->decides_around(around)) return {};
-  // As the larger cube sums it: enough to drop most of what can be dropped, before anything is made for it.
-  if (!value(*tree_, places_in(around)).contains(1)) return {};
-  FieldTree own = localized(*tree_, around);
+  // As the larger cube sums it: enough to drop most of what can be dropped, before anything is made for it. Where
+  // hardly a ray comes that is all, until few operands are left.
+  auto [own, bounds] = restricted_and_bounded(*tree_, around);
+  if (!bounds.contains(1)) return {};
+  const bool is_rare = is_hardly_met(division_.spacing.get(), cell->box(), cell->level_);
+  const bool only_thinned = is_rare && is_list(own);
+  if (!only_thinned) own = localized(own, around);
   const auto f = value(own, variables_at<Jet<Interval, 3>>(places_in(around)));
   if (!f.value.contains(1)) return {};
   const bool one_sheet = excludes_zero(f.slope[0]) || excludes_zero(f.slope[1]) || excludes_zero(f.slope[2]);
   const std::size_t records = own.records().size();
   const bool shrinks = static_cast<double>(records) < worth_a_copy * static_cast<double>(tree_->records().size());
-  cell->is_leaf_ = is_fine_enough(own, shrinks, one_sheet, cell->level_) ||
-                   is_hardly_met(division_.spacing.get(), cell->box(), cell->level_);
+  cell->is_leaf_ = is_fine_enough(own, shrinks, one_sheet, cell->level_) || (is_rare && !only_thinned);
   cell->tree_ = shrinks || records <= many_records ? std::make_shared<const FieldTree>(std::move(own)) : tree_;
   return cell;
 }

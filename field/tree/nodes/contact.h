@@ -2,9 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "field/tree/nodes/bulge.h"
 
@@ -61,23 +62,42 @@ struct Contact {
     return max(most + contact_term(bulge, second), second + contact_term(bulge, most));
   }
 
-  /// The body whose field the value is, all over these intervals.
-  std::optional<std::size_t> only(std::span<const Interval> f) const {
-    for (std::size_t k = 0; k < (first_only ? 1 : f.size()); ++k) {
-      const double bulge_of_others = contact_term(bulge, f[k]).hi;
-      const auto leaves = [&](const Interval& other) {
-        return other.hi < from() && (first_only || (Interval(other.hi) + Interval(bulge_of_others)).hi <= f[k].lo);
-      };
-      bool is_only = true;
-      for (std::size_t i = 0; i < f.size(); ++i) is_only = is_only && (i == k || leaves(f[i]));
-      if (is_only) return k;
-    }
-    return {};
+  /// Of each body, whether the value depends on it all over these intervals: all others may go at once.
+  std::vector<bool> counts(std::span<const Interval> f) const {
+    return first_only ? counts_beside_first(f) : counts_of_all(f);
   }
 
  private:
   double from() const {
     return std::visit([](const auto& b) { return b.from; }, bulge);
+  }
+  // A body leaves the value as it is where two others are always larger, or where it has no bulge on others and its own
+  // deformed field never is the largest.
+  std::vector<bool> counts_of_all(std::span<const Interval> f) const {
+    std::size_t first = 0, second = 1;
+    if (f[1].lo > f[0].lo) std::swap(first, second);
+    double most = std::max(f[0].hi, f[1].hi);
+    for (std::size_t i = 2; i < f.size(); ++i) {
+      most = std::max(most, f[i].hi);
+      if (f[i].lo > f[first].lo) second = std::exchange(first, i);
+      else if (f[i].lo > f[second].lo) second = i;
+    }
+    const double bulge_of_largest = contact_term(bulge, Interval(f[first].lo, most)).hi;
+    std::vector<bool> counts(f.size(), true);
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      const bool is_third = i != second && f[i].hi <= f[second].lo;
+      const bool is_idle = f[i].hi < from() && (Interval(f[i].hi) + Interval(bulge_of_largest)).hi <= f[first].lo;
+      counts[i] = i == first || !(is_third || is_idle);
+    }
+    return counts;
+  }
+  // Of the others the largest counts, where it has a bulge.
+  std::vector<bool> counts_beside_first(std::span<const Interval> f) const {
+    double largest = 0;
+    for (const Interval& other : f.subspan(1)) largest = std::max(largest, other.lo);
+    std::vector<bool> counts(f.size(), true);
+    for (std::size_t i = 1; i < f.size(); ++i) counts[i] = f[i].hi >= from() && f[i].hi >= largest;
+    return counts;
   }
   static std::size_t largest(std::span<const double> f, std::size_t but) {
     std::size_t best = but == 0 ? 1 : 0;

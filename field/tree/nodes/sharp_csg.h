@@ -42,6 +42,11 @@ struct SharpUnion {
       whole = smooth > 0 ? SharpCorner{1 - smooth, 1 - smooth}.value(whole, x) : max(whole, x);
     return whole;
   }
+  /// Whether a further child leaves what is before it as it is, or takes its place, all over these intervals.
+  bool spares(const Interval& rest, const Interval& f) const {
+    return smooth > 0 ? SharpCorner{1 - smooth, 1 - smooth}.is_first(rest, f) : f.hi <= rest.lo;
+  }
+  bool replaces(const Interval& rest, const Interval& f) const { return spares(f, rest); }
 };
 
 /// The intersection.
@@ -68,6 +73,11 @@ struct SharpIntersection {
   X both(const X& x, const X& y) const {
     return smooth > 0 ? SharpCorner{1 + smooth, 1 + smooth}.value(x, y) : min(x, y);
   }
+  /// As of a union.
+  bool spares(const Interval& rest, const Interval& f) const {
+    return smooth > 0 ? SharpCorner{1 + smooth, 1 + smooth}.is_first(rest, f) : f.lo >= rest.hi;
+  }
+  bool replaces(const Interval& rest, const Interval& f) const { return spares(f, rest); }
 };
 
 /// The first child without the others: the intersection with their complements 2 - f.
@@ -91,8 +101,7 @@ struct SharpDifference {
   }
   /// Whether a child with this field leaves all of the rest as it is.
   bool spares(const Interval& rest, const Interval& f) const {
-    const Interval wall = max(complement(f), Interval(0));
-    return smooth > 0 ? SharpCorner{1 + smooth, 1 + smooth}.is_first(rest, wall) : wall.lo >= rest.hi;
+    return SharpIntersection{smooth}.spares(rest, max(complement(f), Interval(0)));
   }
 };
 
