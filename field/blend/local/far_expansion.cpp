@@ -14,9 +14,7 @@
 namespace marrow {
 namespace {
 
-using Lanes = double __attribute__((vector_size(64)));
 using Column = FarExpansion::Column;
-static_assert(sizeof(Lanes) == FarExpansion::lanes * sizeof(double));
 constexpr int degree = FarPolynomial::degree;
 constexpr std::size_t coefficient_count = FarPolynomial::coefficient_count;
 
@@ -51,51 +49,73 @@ struct Sums {
   double* out;
 };
 
-[[gnu::always_inline]] inline const Lanes& in(const Column& c, int group) {
-  return *reinterpret_cast<const Lanes*>(&c.of[group][0]);
-}
-[[gnu::always_inline]] inline Lanes& in(Column& c, int group) { return *reinterpret_cast<Lanes*>(&c.of[group][0]); }
+// The lanes by as many as a register holds: sums of all of them would not stay in sixteen registers of half the width.
+// (Not by a number of lanes: an alias template does not keep a size that depends on it.)
+using Eight = double __attribute__((vector_size(64)));
+static_assert(sizeof(Eight) == FarExpansion::lanes * sizeof(double));
+using Four = double __attribute__((vector_size(32)));
+using Two = double __attribute__((vector_size(16)));
+template <class Part>
+constexpr int width = static_cast<int>(sizeof(Part) / sizeof(double));
 
-// Those with the same powers of x and y, which stand in `start` with the weight, and those of z up to Highest.
-template <int Highest>
+template <class Part>
+[[gnu::always_inline]] inline const Part& in(const Column& c, int group, int lane) {
+  return *reinterpret_cast<const Part*>(&c.of[group][lane]);
+}
+
+template <class Part>
+[[gnu::always_inline]] inline void multiply(Column& by, const Column& factor, int groups) {
+  for (int g = 0; g < groups; ++g)
+    for (int lane = 0; lane < FarExpansion::lanes; lane += width<Part>)
+      *reinterpret_cast<Part*>(&by.of[g][lane]) *= in<Part>(factor, g, lane);
+}
+
+// Those with the same powers of x and y, which stand in `start` with the weight, and those of z up to Highest. Lanes
+// are added up in the same order whatever the width.
+template <class Part, int Highest>
 [[gnu::always_inline]] inline void sum_column(const Column& start, const Column& z, int groups, double*(&out)) {
-  Lanes sums[Highest + 1]{};
-  for (int g = 0; g < groups; ++g) {
-    Lanes p = in(start, g);
-    for (int c = 0; c < Highest; ++c) {
-      sums[c] += p;
-      p *= in(z, g);
+  alignas(sizeof(Eight)) double lanes[Highest + 1][FarExpansion::lanes];
+  for (int lane = 0; lane < FarExpansion::lanes; lane += width<Part>) {
+    Part sums[Highest + 1]{};
+    for (int g = 0; g < groups; ++g) {
+      Part p = in<Part>(start, g, lane);
+      for (int c = 0; c < Highest; ++c) {
+        sums[c] += p;
+        p *= in<Part>(z, g, lane);
+      }
+      sums[Highest] += p;
     }
-    sums[Highest] += p;
+    for (int c = 0; c <= Highest; ++c) *reinterpret_cast<Part*>(&lanes[c][lane]) = sums[c];
   }
-  for (const Lanes& s : sums) *out++ = ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
+  for (const auto& s : lanes) *out++ = ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
 }
 
-template <std::size_t... Highest>
+template <class Part, std::size_t... Highest>
 [[gnu::always_inline]] inline void sum_column_to(int highest, const Column& start, const Column& z, int groups,
                                                  double*(&out), std::index_sequence<Highest...>) {
   (void)((highest == static_cast<int>(Highest) &&
-          (sum_column<static_cast<int>(Highest)>(start, z, groups, out), true)) ||
+          (sum_column<Part, static_cast<int>(Highest)>(start, z, groups, out), true)) ||
          ...);
 }
 
 // A column after the other, by the power of x, then of y.
+template <class Part>
 [[gnu::always_inline]] inline void sum_columns(const Sums& s) {
   Column of_x = s.weight;
   double* out = s.out;
   for (int a = 0; a <= s.highest; ++a) {
     Column of_xy = of_x;
     for (int b = 0; a + b <= s.highest; ++b) {
-      sum_column_to(s.highest - a - b, of_xy, s.of.z, s.groups, out, std::make_index_sequence<degree + 1>());
-      for (int g = 0; g < s.groups; ++g) in(of_xy, g) *= in(s.of.y, g);
+      sum_column_to<Part>(s.highest - a - b, of_xy, s.of.z, s.groups, out, std::make_index_sequence<degree + 1>());
+      multiply<Part>(of_xy, s.of.y, s.groups);
     }
-    for (int g = 0; g < s.groups; ++g) in(of_x, g) *= in(s.of.x, g);
+    multiply<Part>(of_x, s.of.x, s.groups);
   }
 }
 
-[[gnu::target("avx512f,prefer-vector-width=512")]] void sum_columns_512(const Sums& s) { sum_columns(s); }
-[[gnu::target("avx2")]] void sum_columns_256(const Sums& s) { sum_columns(s); }
-void sum_columns_128(const Sums& s) { sum_columns(s); }
+[[gnu::target("avx512f,prefer-vector-width=512")]] void sum_columns_512(const Sums& s) { sum_columns<Eight>(s); }
+[[gnu::target("avx2")]] void sum_columns_256(const Sums& s) { sum_columns<Four>(s); }
+void sum_columns_128(const Sums& s) { sum_columns<Two>(s); }
 
 // Adds them, in the order of monomials.
 void sum_moments(const FarExpansion::Batch& batch, const Column& weight, int highest, double* to) {

@@ -1,43 +1,72 @@
 // The sums in eight lanes: each lane adds its own sources in their order, and the lanes are added in theirs, so that
-// nothing depends on how wide the machine's vectors are.
+// nothing depends on how wide the machine's vectors are. A register's width of lanes goes after the other, as sums of
+// all eight would not stay in sixteen registers of half the width.
 #include "field/blend/sources/source_sums.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <span>
 
 namespace marrow {
 namespace {
 
-using Lanes = double __attribute__((vector_size(64)));
+using Eight = double __attribute__((vector_size(64)));
+using Four = double __attribute__((vector_size(32)));
+using Two = double __attribute__((vector_size(16)));
 using Group = SourceSums::Group;
 using Marks = SourceSums::Marks;
-static_assert(sizeof(Lanes) == SourceSums::lanes * sizeof(double));
+static_assert(sizeof(Eight) == SourceSums::lanes * sizeof(double));
 
-struct Totals {
-  Lanes f, S[3], gradient[3], k, J[6], second, third, nearest_inverse;
+template <class Part>
+constexpr int width = static_cast<int>(sizeof(Part) / sizeof(double));
+
+template <class Part>
+struct TotalsOf {
+  Part f, S[3], gradient[3], k, J[6], second, third, nearest_inverse;
 };
+using Totals = TotalsOf<Eight>;
 
-[[gnu::always_inline]] inline Lanes load(const double (&v)[SourceSums::lanes]) {
-  return *reinterpret_cast<const Lanes*>(&v[0]);
+template <class Part>
+struct MarkTotalsOf {
+  Part first, second, first_gradient[3], second_gradient[3];
+};
+using MarkTotals = MarkTotalsOf<Eight>;
+
+template <class Part>
+[[gnu::always_inline]] inline Part load(const double (&v)[SourceSums::lanes], int lane) {
+  return *reinterpret_cast<const Part*>(&v[lane]);
 }
 
-[[gnu::always_inline]] inline void take_root(Lanes& x) {
-  for (int i = 0; i < SourceSums::lanes; ++i) x[i] = std::sqrt(x[i]);
+// Totals of some lanes, number by number, to their places among all.
+template <class Part, class OfPart, class OfAll>
+[[gnu::always_inline]] inline void store(const OfPart& t, int lane, OfAll& out) {
+  static_assert(sizeof(OfPart) / sizeof(Part) == sizeof(OfAll) / sizeof(Eight));
+  const auto* from = reinterpret_cast<const char*>(&t);
+  auto* to = reinterpret_cast<char*>(&out) + static_cast<std::size_t>(lane) * sizeof(double);
+  for (std::size_t i = 0; i < sizeof(OfPart) / sizeof(Part); ++i)
+    std::memcpy(to + i * sizeof(Eight), from + i * sizeof(Part), sizeof(Part));
+}
+
+template <class Part>
+[[gnu::always_inline]] inline void take_root(Part& x) {
+  for (int i = 0; i < width<Part>; ++i) x[i] = std::sqrt(x[i]);
 }
 
 // The factors -m and m (m+2) of derivatives are left to the end.
-template <bool WithSlopes>
-[[gnu::always_inline]] inline void fold(std::span<const Group> groups, int m, const Vec3d& p, Totals& out) {
-  Totals t{};
+template <class Part, bool WithSlopes>
+[[gnu::always_inline]] inline void fold_part(std::span<const Group> groups, int lane, int m, const Vec3d& p,
+                                             Totals& out) {
+  TotalsOf<Part> t{};
   for (const Group& g : groups) {
-    const Lanes x = p.x - load(g.x), y = p.y - load(g.y), z = p.z - load(g.z), tau = load(g.radius);
-    const Lanes inverse = 1.0 / (x * x + y * y + z * z + load(g.lift_squared));
-    Lanes root = inverse, f = load(g.weight);
+    const Part x = p.x - load<Part>(g.x, lane), y = p.y - load<Part>(g.y, lane), z = p.z - load<Part>(g.z, lane),
+               tau = load<Part>(g.radius, lane);
+    const Part inverse = 1.0 / (x * x + y * y + z * z + load<Part>(g.lift_squared, lane));
+    Part root = inverse, f = load<Part>(g.weight, lane);
     if (WithSlopes || m % 2 != 0) take_root(root);
     for (int i = 0; i < m / 2; ++i) f *= inverse;
     if (m % 2 != 0) f *= root;
-    const Lanes steep = f * inverse, k = steep * tau;
+    const Part steep = f * inverse, k = steep * tau;
     t.f += f;
     t.S[0] += k * x;
     t.S[1] += k * y;
@@ -46,7 +75,7 @@ template <bool WithSlopes>
       t.gradient[0] += steep * x;
       t.gradient[1] += steep * y;
       t.gradient[2] += steep * z;
-      const Lanes bent = k * inverse, bx = bent * x, by = bent * y;
+      const Part bent = k * inverse, bx = bent * x, by = bent * y;
       t.k += k;
       t.J[0] += bx * x;
       t.J[1] += by * y;
@@ -59,70 +88,42 @@ template <bool WithSlopes>
       t.nearest_inverse = inverse > t.nearest_inverse ? inverse : t.nearest_inverse;
     }
   }
-  out = t;
+  store<Part>(t, lane, out);
 }
-
-[[gnu::target("avx512f,prefer-vector-width=512")]] void values_512(std::span<const Group> g, int m, const Vec3d& p,
-                                                                   Totals& out) {
-  fold<false>(g, m, p, out);
-}
-[[gnu::target("avx512f,prefer-vector-width=512")]] void slopes_512(std::span<const Group> g, int m, const Vec3d& p,
-                                                                   Totals& out) {
-  fold<true>(g, m, p, out);
-}
-[[gnu::target("avx2")]] void values_256(std::span<const Group> g, int m, const Vec3d& p, Totals& out) {
-  fold<false>(g, m, p, out);
-}
-[[gnu::target("avx2")]] void slopes_256(std::span<const Group> g, int m, const Vec3d& p, Totals& out) {
-  fold<true>(g, m, p, out);
-}
-void values_128(std::span<const Group> g, int m, const Vec3d& p, Totals& out) { fold<false>(g, m, p, out); }
-void slopes_128(std::span<const Group> g, int m, const Vec3d& p, Totals& out) { fold<true>(g, m, p, out); }
 
 // As far away as within rho of p they can be.
-[[gnu::always_inline]] inline void fold_least(std::span<const Group> groups, int m, const Vec3d& p, double rho,
-                                              Lanes& out) {
-  Lanes sum{};
+template <class Part>
+[[gnu::always_inline]] inline void fold_least_part(std::span<const Group> groups, int lane, int m, const Vec3d& p,
+                                                   double rho, Eight& out) {
+  Part sum{};
   for (const Group& g : groups) {
-    const Lanes x = p.x - load(g.x), y = p.y - load(g.y), z = p.z - load(g.z);
-    Lanes distance = x * x + y * y + z * z + load(g.lift_squared), f = load(g.weight);
+    const Part x = p.x - load<Part>(g.x, lane), y = p.y - load<Part>(g.y, lane), z = p.z - load<Part>(g.z, lane);
+    Part distance = x * x + y * y + z * z + load<Part>(g.lift_squared, lane), f = load<Part>(g.weight, lane);
     take_root(distance);
-    const Lanes inverse = 1.0 / (distance + rho);
+    const Part inverse = 1.0 / (distance + rho);
     for (int i = 0; i < m; ++i) f *= inverse;
     sum += f;
   }
-  out = sum;
+  store<Part>(sum, lane, out);
 }
-[[gnu::target("avx512f,prefer-vector-width=512")]] void least_512(std::span<const Group> g, int m, const Vec3d& p,
-                                                                  double rho, Lanes& out) {
-  fold_least(g, m, p, rho, out);
-}
-[[gnu::target("avx2")]] void least_256(std::span<const Group> g, int m, const Vec3d& p, double rho, Lanes& out) {
-  fold_least(g, m, p, rho, out);
-}
-void least_128(std::span<const Group> g, int m, const Vec3d& p, double rho, Lanes& out) {
-  fold_least(g, m, p, rho, out);
-}
-
-struct MarkTotals {
-  Lanes first, second, first_gradient[3], second_gradient[3];
-};
 
 // The factor -m of gradients is left to the end.
-[[gnu::always_inline]] inline void fold_marks(std::span<const Group> groups, const Marks* marks, int m, const Vec3d& p,
-                                              MarkTotals& out) {
-  MarkTotals t{};
+template <class Part>
+[[gnu::always_inline]] inline void fold_marks_part(std::span<const Group> groups, const Marks* marks, int lane, int m,
+                                                   const Vec3d& p, MarkTotals& out) {
+  MarkTotalsOf<Part> t{};
   for (const Group& g : groups) {
-    const Lanes x = p.x - load(g.x), y = p.y - load(g.y), z = p.z - load(g.z), mark = load((marks++)->of);
-    const Lanes inverse = 1.0 / (x * x + y * y + z * z + load(g.lift_squared));
-    Lanes f = load(g.weight) * mark;
+    const Part x = p.x - load<Part>(g.x, lane), y = p.y - load<Part>(g.y, lane), z = p.z - load<Part>(g.z, lane),
+               mark = load<Part>((marks++)->of, lane);
+    const Part inverse = 1.0 / (x * x + y * y + z * z + load<Part>(g.lift_squared, lane));
+    Part f = load<Part>(g.weight, lane) * mark;
     if (m % 2 != 0) {
-      Lanes root = inverse;
+      Part root = inverse;
       take_root(root);
       f *= root;
     }
     for (int i = 0; i < m / 2; ++i) f *= inverse;
-    const Lanes squared = f * mark, steep = f * inverse, steep_squared = squared * inverse;
+    const Part squared = f * mark, steep = f * inverse, steep_squared = squared * inverse;
     t.first += f;
     t.second += squared;
     t.first_gradient[0] += steep * x;
@@ -132,25 +133,68 @@ struct MarkTotals {
     t.second_gradient[1] += steep_squared * y;
     t.second_gradient[2] += steep_squared * z;
   }
-  out = t;
+  store<Part>(t, lane, out);
 }
-[[gnu::target("avx512f,prefer-vector-width=512")]] void marks_512(std::span<const Group> g, const Marks* marks, int m,
-                                                                  const Vec3d& p, MarkTotals& out) {
-  fold_marks(g, marks, m, p, out);
+
+// The whole, for registers that hold a Part.
+template <class Part>
+struct FoldsOf {
+  using Groups = std::span<const Group>;
+  template <bool WithSlopes>
+  [[gnu::always_inline]] static inline void fold(Groups groups, int m, const Vec3d& p, Totals& out) {
+    for (int lane = 0; lane < SourceSums::lanes; lane += width<Part>)
+      fold_part<Part, WithSlopes>(groups, lane, m, p, out);
+  }
+  [[gnu::always_inline]] static inline void least(Groups groups, int m, const Vec3d& p, double rho, Eight& out) {
+    for (int lane = 0; lane < SourceSums::lanes; lane += width<Part>)
+      fold_least_part<Part>(groups, lane, m, p, rho, out);
+  }
+  [[gnu::always_inline]] static inline void marks(Groups groups, const Marks* marks, int m, const Vec3d& p,
+                                                  MarkTotals& out) {
+    for (int lane = 0; lane < SourceSums::lanes; lane += width<Part>)
+      fold_marks_part<Part>(groups, marks, lane, m, p, out);
+  }
+};
+
+using Groups = std::span<const Group>;
+[[gnu::target("avx512f,prefer-vector-width=512")]] void values_512(Groups g, int m, const Vec3d& p, Totals& out) {
+  FoldsOf<Eight>::fold<false>(g, m, p, out);
 }
-[[gnu::target("avx2")]] void marks_256(std::span<const Group> g, const Marks* marks, int m, const Vec3d& p,
-                                       MarkTotals& out) {
-  fold_marks(g, marks, m, p, out);
+[[gnu::target("avx512f,prefer-vector-width=512")]] void slopes_512(Groups g, int m, const Vec3d& p, Totals& out) {
+  FoldsOf<Eight>::fold<true>(g, m, p, out);
 }
-void marks_128(std::span<const Group> g, const Marks* marks, int m, const Vec3d& p, MarkTotals& out) {
-  fold_marks(g, marks, m, p, out);
+[[gnu::target("avx512f,prefer-vector-width=512")]] void least_512(Groups g, int m, const Vec3d& p, double rho,
+                                                                  Eight& out) {
+  FoldsOf<Eight>::least(g, m, p, rho, out);
+}
+[[gnu::target("avx512f,prefer-vector-width=512")]] void marks_512(Groups g, const Marks* marks, int m, const Vec3d& p,
+                                                                  MarkTotals& out) {
+  FoldsOf<Eight>::marks(g, marks, m, p, out);
+}
+[[gnu::target("avx2")]] void values_256(Groups g, int m, const Vec3d& p, Totals& out) {
+  FoldsOf<Four>::fold<false>(g, m, p, out);
+}
+[[gnu::target("avx2")]] void slopes_256(Groups g, int m, const Vec3d& p, Totals& out) {
+  FoldsOf<Four>::fold<true>(g, m, p, out);
+}
+[[gnu::target("avx2")]] void least_256(Groups g, int m, const Vec3d& p, double rho, Eight& out) {
+  FoldsOf<Four>::least(g, m, p, rho, out);
+}
+[[gnu::target("avx2")]] void marks_256(Groups g, const Marks* marks, int m, const Vec3d& p, MarkTotals& out) {
+  FoldsOf<Four>::marks(g, marks, m, p, out);
+}
+void values_128(Groups g, int m, const Vec3d& p, Totals& out) { FoldsOf<Two>::fold<false>(g, m, p, out); }
+void slopes_128(Groups g, int m, const Vec3d& p, Totals& out) { FoldsOf<Two>::fold<true>(g, m, p, out); }
+void least_128(Groups g, int m, const Vec3d& p, double rho, Eight& out) { FoldsOf<Two>::least(g, m, p, rho, out); }
+void marks_128(Groups g, const Marks* marks, int m, const Vec3d& p, MarkTotals& out) {
+  FoldsOf<Two>::marks(g, marks, m, p, out);
 }
 
 struct Folds {
-  void (*values)(std::span<const Group>, int, const Vec3d&, Totals&);
-  void (*slopes)(std::span<const Group>, int, const Vec3d&, Totals&);
-  void (*least)(std::span<const Group>, int, const Vec3d&, double, Lanes&);
-  void (*marks)(std::span<const Group>, const Marks*, int, const Vec3d&, MarkTotals&);
+  void (*values)(Groups, int, const Vec3d&, Totals&);
+  void (*slopes)(Groups, int, const Vec3d&, Totals&);
+  void (*least)(Groups, int, const Vec3d&, double, Eight&);
+  void (*marks)(Groups, const Marks*, int, const Vec3d&, MarkTotals&);
 };
 
 const Folds& folds() {
@@ -160,12 +204,12 @@ const Folds& folds() {
   return best;
 }
 
-double total(const Lanes& v) {
+double total(const Eight& v) {
   double sum = 0;
   for (int i = 0; i < SourceSums::lanes; ++i) sum += v[i];
   return sum;
 }
-Vec3d total(const Lanes (&v)[3]) { return {total(v[0]), total(v[1]), total(v[2])}; }
+Vec3d total(const Eight (&v)[3]) { return {total(v[0]), total(v[1]), total(v[2])}; }
 
 }  // namespace
 
@@ -218,7 +262,7 @@ MarkSums SourceSums::marks_at(const Vec3d& p) const {
 }
 
 double SourceSums::least_within(const Vec3d& p, double rho) const {
-  Lanes sum;
+  Eight sum;
   folds().least(groups_, exponent_, p, rho, sum);
   return total(sum);
 }
