@@ -49,10 +49,13 @@ const PointSkeleton* lone_point(const FieldNode& node) {
 }
 
 std::optional<Affine> placement_of(const GeneralNode& node) {
-  constexpr double most_sheared = 100;
-  const auto* shear = std::get_if<Shear>(&node.node->node);
-  if (shear == nullptr || !(std::fabs(shear->amount) <= most_sheared)) return std::nullopt;
-  return shear->parent_from_child();
+  constexpr double most = 100;
+  if (const auto* shear = std::get_if<Shear>(&node.node->node); shear != nullptr && std::fabs(shear->amount) <= most)
+    return shear->parent_from_child();
+  if (const auto* taper = std::get_if<Taper>(&node.node->node);
+      taper != nullptr && taper->start == taper->end && 1 / most <= taper->start && taper->start <= most)
+    return taper->parent_from_child();
+  return std::nullopt;
 }
 
 Absorbs absorbs(const FieldNode& parent, const FieldNode& child) {

@@ -12,7 +12,7 @@ namespace marrow {
 const PointSkeleton* lone_point(const FieldNode&);
 
 /// Where a general node places its only child, if it does no more than that: a shear, by no more than 100, as boxes
-/// around what slides farther tell little.
+/// around what slides farther tell little, and a taper of one width, of no more than 100 or a hundredth.
 std::optional<Affine> placement_of(const GeneralNode&);
 
 /// Whether the parent may take the operands of a child in the place of the child itself: f(f(a, b), c) = f(a, b, c).

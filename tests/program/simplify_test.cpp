@@ -151,6 +151,28 @@ TEST(Simplify, AShearPlacesWhatItSlides) {
   }
 }
 
+TEST(Simplify, ATaperOfOneWidthPlacesWhatItWidens) {
+  Random random(2026112910);
+  for (int round = 0; round < 50; ++round) {
+    const double width = pow(10, random.between(-1, 1));
+    Taper taper{random.vector(1), normalize(random.vector(1)), 1, width, width};
+    FieldDescription field;
+    const FieldNodeId point = skeleton(field, PointSkeleton{random.vector(1), 0.5});
+    const auto alone = compile(with_root(field, point));
+    const auto placed = compile(with_root(field, general(field, taper, {point})));
+    ASSERT_TRUE(alone && placed);
+    EXPECT_EQ(placed->parts().size(), 1u);
+    EXPECT_TRUE(placed->trees().empty());
+    for (int i = 0; i < 20; ++i) {
+      const Vec3d p = random.vector(2);
+      const double wanted = value(*alone, taper.child_point(p));
+      EXPECT_NEAR(value(*placed, p), wanted, 1e-11 * (1 + wanted));
+    }
+    taper.end *= 1.001;
+    EXPECT_TRUE(compile(with_root(field, general(field, taper, {point})))->parts().empty());
+  }
+}
+
 TEST(Simplify, AShearBeyondMeasureStaysANode) {
   FieldDescription field;
   Shear shear;

@@ -1,6 +1,9 @@
 // Widens or narrows space along an axis.
 #pragma once
 
+#include <cstddef>
+
+#include "field/math/affine.h"
 #include "field/math/box3.h"
 #include "field/number/functions.h"
 #include "field/tree/node_info.h"
@@ -24,13 +27,25 @@ struct Taper {
   }
   Box3 support(const Box3& child) const;
 
+  /// The same as a placement of the child. Precondition: the width is the same everywhere.
+  Affine parent_from_child() const {
+    const Vec3d a = axis.vec();
+    Affine map = Affine::scale({start, start, start});
+    for (std::size_t k = 0; k < 3; ++k) map.columns[k] += a * ((1 - start) * a[k]);
+    map.translation = center - map.vector(center);
+    return map;
+  }
+
   template <Number X>
   Vec3<X> child_point(const Vec3<X>& p) const {
-    const Vec3<X> a = constant<X>(axis), v = p - constant<X>(center);
-    const X along = dot(v, a);
+    const Frame frame = Frame::around(axis);
+    const Vec3<X> x = constant<X>(frame.x), y = constant<X>(frame.y), z = constant<X>(frame.z);
+    const Vec3<X> v = p - constant<X>(center);
+    const X along = dot(v, z);
     const X width = X(start) + X(end - start) * clamp(along / X(length), 0, 1);
-    const X less = X(1.0) - X(1.0) / clamp(width, min(start, end), max(start, end));
-    return p - (v - a * along) * less;
+    // Each coordinate by itself: taken away from p, what is across would be counted twice by enclosures.
+    const X less = X(1.0) / clamp(width, min(start, end), max(start, end));
+    return constant<X>(center) + x * (dot(v, x) * less) + y * (dot(v, y) * less) + z * along;
   }
 };
 
