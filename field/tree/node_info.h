@@ -48,7 +48,7 @@ struct Whole {  ///< of an int
 struct Switch {};  ///< of a bool
 /// Of a double in radians; scenes write degrees.
 struct Angle {
-  double min_deg = -36000, max_deg = 36000;
+  double min_deg = 0, max_deg = 360;
 };
 struct Position {  ///< of a Vec3d
   bool required = false;

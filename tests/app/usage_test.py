@@ -54,6 +54,16 @@ class UsageTest(ProgramTest):
         slice_of = ("slice", scene, "--plane", "z=0", "--window", "0,0,1,1", "--width")
         self.assertIn("a width of 8192 fits", self.expect(2, *slice_of, "8193").stderr)
 
+    def test_a_slice_beside_the_surface_says_so(self):
+        scene = self.write("point.yaml", POINT)
+        slice_of = ("slice", scene, "-o", "slice.png", "--width", "16")
+        self.assertEqual(self.expect(0, *slice_of, "--plane", "z=0").stderr, "")
+        self.assertIn("does not meet this window: all of it is below 0.0",
+                      self.expect(0, *slice_of, "--plane", "z=4").stderr)
+        self.assertIn("all of it is above",
+                      self.expect(0, *slice_of, "--plane", "z=0", "--window=-0.01,-0.01,0.01,0.01").stderr)
+        self.assertIn("slice.png", self.files())
+
     def test_a_picture_too_large_for_memory(self):
         scene = self.write("point.yaml", POINT)
         done = subprocess.run(["prlimit", "--as=2000000000", PROGRAM, "render", scene, "-D", "film.size=[32768, 32768]"],

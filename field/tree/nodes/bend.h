@@ -25,7 +25,7 @@ struct Bend {
     key("axis", &Bend::axis, form::Direction{}, "direction of the line that becomes an arc");
     key("toward", &Bend::toward, form::Direction{}, "where its ends move; its part along the axis does not count");
     key("length", &Bend::length, form::positive, "of the part that bends");
-    key("angle", &Bend::angle, form::Angle{.min_deg = 0, .max_deg = 360}, "between the two ends, in degrees");
+    key("angle", &Bend::angle, form::Angle{}, "between the two ends, in degrees");
   }
   std::string problem(std::size_t) const {
     return marrow::length(across()) > 1e-6 ? "" : "toward must not point along the axis";

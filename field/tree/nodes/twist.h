@@ -17,7 +17,8 @@ struct Twist {
   static void keys(auto&& key) {
     key("center", &Twist::center, form::Position{}, "a point of the axis, where nothing turns");
     key("axis", &Twist::axis, form::Direction{}, "direction of the axis");
-    key("angle", &Twist::angle_per_length, form::Angle{}, "turn for each unit of length, in degrees");
+    key("angle", &Twist::angle_per_length, form::Angle{.min_deg = -1e9, .max_deg = 1e9},
+        "turn for each unit of length, in degrees");
   }
   /// Whatever turns stays within its distance from the axis.
   Box3 support(const Box3& child) const;

@@ -1,6 +1,8 @@
 // marrow slice: a field on an axis plane, in false colour or as raw numbers.
 #include <algorithm>
 
+#include <fmt/core.h>
+
 #include "field/program/programs_in_box.h"
 #include "renderer/app/command_line/commands.h"
 #include "renderer/app/command_line/files.h"
@@ -57,6 +59,19 @@ Status write(const SliceImage& image, const SliceCommand& command, const SceneDe
   return write_png(command.output, *painted, PngDepth::Bits8, {{"marrow/sceneHash", scene.hash}});
 }
 
+// A picture without a line says too little: on which side of the surface all of it is, and how far from it.
+Diagnostics doubts_about(const SliceImage& image) {
+  const auto [least, most] = std::ranges::minmax(image.samples, {}, &SliceSample::value);
+  if (least.value <= image.iso && image.iso <= most.value) return {};
+  const bool outside = most.value < image.iso;
+  Diagnostic doubt =
+      failure(fmt::format("the surface, where the field is {}, does not meet this window: {} {:.3g}", image.iso,
+                          outside ? "all of it is below" : "all of it is above", outside ? most.value : least.value));
+  doubt.hint = "`info` tells the bounds of the surface";
+  doubt.severity = Severity::Warning;
+  return {doubt};
+}
+
 }  // namespace
 
 ExitCode run(const SliceCommand& command) {
@@ -76,7 +91,8 @@ ExitCode run(const SliceCommand& command) {
   if (!image) return report(image.why(), ExitCode::Usage);
   if (interruption_flag()) return complain("interrupted; nothing was written\n"), ExitCode::Interrupted;
   const auto written = write(*image, command, scene->description);
-  return written ? ExitCode::Ok : report(written.why(), ExitCode::WriteFailed);
+  if (!written) return report(written.why(), ExitCode::WriteFailed);
+  return report(doubts_about(*image), ExitCode::Ok);
 }
 
 }  // namespace marrow
