@@ -7,6 +7,7 @@
 
 #include "field/base/lazy.h"
 #include "field/kernel/inverse_family.h"
+#include "field/math/eight_doubles.h"
 #include "field/math/elementary.h"
 #include "field/math/moment_series.h"
 #include "field/math/taylor_remainder.h"
@@ -49,14 +50,7 @@ struct Sums {
   double* out;
 };
 
-// The lanes by as many as a register holds: sums of all of them would not stay in sixteen registers of half the width.
-// (Not by a number of lanes: an alias template does not keep a size that depends on it.)
-using Eight = double __attribute__((vector_size(64)));
-static_assert(sizeof(Eight) == FarExpansion::lanes * sizeof(double));
-using Four = double __attribute__((vector_size(32)));
-using Two = double __attribute__((vector_size(16)));
-template <class Part>
-constexpr int width = static_cast<int>(sizeof(Part) / sizeof(double));
+static_assert(width<Eight> == FarExpansion::lanes);
 
 template <class Part>
 [[gnu::always_inline]] inline const Part& in(const Column& c, int group, int lane) {

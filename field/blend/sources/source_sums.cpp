@@ -8,18 +8,15 @@
 #include <cstring>
 #include <span>
 
+#include "field/math/eight_doubles.h"
+
 namespace marrow {
 namespace {
 
-using Eight = double __attribute__((vector_size(64)));
-using Four = double __attribute__((vector_size(32)));
-using Two = double __attribute__((vector_size(16)));
 using Group = SourceSums::Group;
+using Groups = std::span<const Group>;
 using Marks = SourceSums::Marks;
-static_assert(sizeof(Eight) == SourceSums::lanes * sizeof(double));
-
-template <class Part>
-constexpr int width = static_cast<int>(sizeof(Part) / sizeof(double));
+static_assert(width<Eight> == SourceSums::lanes);
 
 template <class Part>
 struct TotalsOf {
@@ -55,8 +52,7 @@ template <class Part>
 
 // The factors -m and m (m+2) of derivatives are left to the end.
 template <class Part, bool WithSlopes>
-[[gnu::always_inline]] inline void fold_part(std::span<const Group> groups, int lane, int m, const Vec3d& p,
-                                             Totals& out) {
+[[gnu::always_inline]] inline void fold_part(Groups groups, int lane, int m, const Vec3d& p, Totals& out) {
   TotalsOf<Part> t{};
   for (const Group& g : groups) {
     const Part x = p.x - load<Part>(g.x, lane), y = p.y - load<Part>(g.y, lane), z = p.z - load<Part>(g.z, lane),
@@ -93,8 +89,8 @@ template <class Part, bool WithSlopes>
 
 // As far away as within rho of p they can be.
 template <class Part>
-[[gnu::always_inline]] inline void fold_least_part(std::span<const Group> groups, int lane, int m, const Vec3d& p,
-                                                   double rho, Eight& out) {
+[[gnu::always_inline]] inline void fold_least_part(Groups groups, int lane, int m, const Vec3d& p, double rho,
+                                                   Eight& out) {
   Part sum{};
   for (const Group& g : groups) {
     const Part x = p.x - load<Part>(g.x, lane), y = p.y - load<Part>(g.y, lane), z = p.z - load<Part>(g.z, lane);
@@ -109,8 +105,8 @@ template <class Part>
 
 // The factor -m of gradients is left to the end.
 template <class Part>
-[[gnu::always_inline]] inline void fold_marks_part(std::span<const Group> groups, const Marks* marks, int lane, int m,
-                                                   const Vec3d& p, MarkTotals& out) {
+[[gnu::always_inline]] inline void fold_marks_part(Groups groups, const Marks* marks, int lane, int m, const Vec3d& p,
+                                                   MarkTotals& out) {
   MarkTotalsOf<Part> t{};
   for (const Group& g : groups) {
     const Part x = p.x - load<Part>(g.x, lane), y = p.y - load<Part>(g.y, lane), z = p.z - load<Part>(g.z, lane),
@@ -139,7 +135,6 @@ template <class Part>
 // The whole, for registers that hold a Part.
 template <class Part>
 struct FoldsOf {
-  using Groups = std::span<const Group>;
   template <bool WithSlopes>
   [[gnu::always_inline]] static inline void fold(Groups groups, int m, const Vec3d& p, Totals& out) {
     for (int lane = 0; lane < SourceSums::lanes; lane += width<Part>)
@@ -156,7 +151,6 @@ struct FoldsOf {
   }
 };
 
-using Groups = std::span<const Group>;
 [[gnu::target("avx512f,prefer-vector-width=512")]] void values_512(Groups g, int m, const Vec3d& p, Totals& out) {
   FoldsOf<Eight>::fold<false>(g, m, p, out);
 }

@@ -11,10 +11,19 @@ std::string LocalConvolution::problem(std::size_t) const {
   return {};
 }
 
+// As extent(): all that is seen from the place lies within its length of it.
+double LocalConvolution::at_most(const PlaneChain& chain, double widest, const Vec3d& p, double rho,
+                                 const Interval& place) const {
+  const double middle = place.middle(), to_end = reach + (place.hi - middle) + (middle - place.lo);
+  const double away = (length(p - chain.position(middle)) - to_end - rho) * (1 - 1e-9);
+  if (!(away > 0)) return Box3::inf;
+  return std::min(2 * to_end, chain.length()) * square(widest) / (2 * away * square(away)) * (1 + 1e-9);
+}
+
 Box3 LocalConvolution::extent(double level) const {
   Box3 box;
   for (const Vec3d& p : points) box.include(p);
-  const double R = *std::max_element(radius.begin(), radius.end());
+  const double R = largest_radius();
   const double seen = std::min(2 * reach, PlaneChain(points).length());
   return box.padded(pow(seen * R * R / (2 * level), 1.0 / 3) * (1 + 1e-9));
 }

@@ -1,6 +1,7 @@
 // Local convolution: only the part of the skeleton beside a point counts there, so that folds do not blend.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,6 +46,9 @@ struct LocalConvolution {
   double radius_at(std::size_t vertex) const { return radius.size() == 1 ? radius[0] : radius[vertex]; }
   template <Number X>
   X over_box(const PlaneChain& chain, const Vec3<X>& p) const;
+  double largest_radius() const { return *std::ranges::max_element(radius); }
+  /// The field within rho of a point, of the polyline beside a place of it; infinite where it may be as near.
+  double at_most(const PlaneChain& chain, double widest, const Vec3d& p, double rho, const Interval& place) const;
   /// The convolution of what is within reach of a place.
   template <Number X>
   X beside(const PlaneChain& chain, const Vec3<X>& p, const X& place) const;
@@ -53,7 +57,8 @@ struct LocalConvolution {
 template <Number X>
 X LocalConvolution::beside(const PlaneChain& chain, const Vec3<X>& p, const X& place) const {
   X sum(0.0);
-  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+  const auto [first, last] = chain.edges_within(lower(place) - reach, upper(place) + reach);
+  for (std::size_t k = first; k < last; ++k) {
     const double start = chain.start[k], length = chain.start[k + 1] - start;
     const X begin = max(place - X(reach + start), X(0.0)), end = min(place + X(reach - start), X(length));
     if (!(upper(end) > lower(begin))) continue;
@@ -70,30 +75,54 @@ X LocalConvolution::value(const Vec3<X>& p) const {
   if constexpr (is_enclosure<X>) {
     return over_box(chain, p);
   } else {
+    const Vec3d at{lower(p.x), lower(p.y), lower(p.z)};
+    const double widest = largest_radius();
     X most(0.0);
-    chain.for_each_place(p, [&](const X& place) { most = max(most, beside(chain, p, place)); });
+    chain.for_each_place(p, [&](const X& place) {
+      if (at_most(chain, widest, at, 0, Interval(lower(place))) > lower(most))
+        most = max(most, beside(chain, p, place));
+    });
     return most;
   }
 }
 
-/// Bounds of the value at all places first; then slopes at those only that may have the largest, unless one of them can
+/// Bounds of the value at all places that may have the largest first; then slopes at those, unless one of them can
 /// vanish.
 template <Number X>
 X LocalConvolution::over_box(const PlaneChain& chain, const Vec3<X>& p) const {
   const Vec3<Interval> box{value_of(p.x), value_of(p.y), value_of(p.z)};
-  LargestOfPlaces<X> places;
-  chain.for_each_group(p, [&](std::span<const PlanePlace<X>> group, bool certain, bool may_tear) {
-    places.add(group, certain, may_tear, [&](const X& place) { return beside(chain, box, Interval(value_of(place))); });
+  const Vec3d center{box.x.middle(), box.y.middle(), box.z.middle()};
+  const double rho = 0.5 * length(Vec3d{box.x.width(), box.y.width(), box.z.width()}) * (1 + 1e-9),
+               widest = largest_radius();
+  LargestOfPlaces places;
+  chain.for_each_group(box, [&](std::span<const PlanePlace<Interval>> group, bool certain, bool may_tear) {
+    places.add(group, certain, may_tear,
+               [&](const Interval& place) { return at_most(chain, widest, center, rho, place); });
   });
+  places.settle([&](const Interval& place) { return beside(chain, box, place); }, JetNumber<X>);
   X most(places.value());
   if constexpr (JetNumber<X>) {
+    if (most.value.hi == Box3::inf) {
+      most.slope.fill(Interval::everything());
+      return most;
+    }
     bool first = true;
-    places.for_each_that_counts([&](const auto& candidate) {
-      const X f = candidate.may_tear ? X(0.0) : beside(chain, p, candidate.place);
-      for (std::size_t i = 0; i < most.slope.size(); ++i) {
-        const Interval slope = candidate.may_tear ? Interval::everything() : f.slope[i];
-        most.slope[i] = first ? slope : hull(most.slope[i], slope);
-      }
+    const auto include = [&](std::size_t i, const Interval& slope) {
+      most.slope[i] = first ? slope : hull(most.slope[i], slope);
+    };
+    places.for_each_that_counts([&](const LargestOfPlaces::Candidate& candidate) {
+      bool is_known = false;
+      const auto add = [&](const X& place) {
+        const X f = beside(chain, p, place);
+        for (std::size_t i = 0; i < most.slope.size(); ++i) include(i, f.slope[i]);
+        is_known = true;
+        first = false;
+      };
+      if (candidate.place.edge == PlaneChain::no_edge) add(X(candidate.place.at));
+      else if (!candidate.may_tear)
+        chain.places_on_edge(p, candidate.place.edge, [&](const PlanePlace<X>& place) { add(place.at); });
+      if (is_known && !candidate.may_tear) return;
+      for (std::size_t i = 0; i < most.slope.size(); ++i) include(i, Interval::everything());
       first = false;
     });
   }

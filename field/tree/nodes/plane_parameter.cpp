@@ -1,5 +1,7 @@
 #include "field/tree/nodes/plane_parameter.h"
 
+#include <algorithm>
+
 namespace marrow {
 
 // A hairpin, where the edges' directions cancel, takes the plane across the edge that ends there.
@@ -15,6 +17,20 @@ PlaneChain::PlaneChain(std::span<const Vec3d> vertices) : points(vertices), star
     normal.push_back(length_squared(sum) > 1e-12 ? normalize(sum).vec() : along[k - 1]);
   }
   normal.push_back(along.back());
+}
+
+Vec3d PlaneChain::position(double at) const {
+  const auto behind = std::upper_bound(start.begin() + 1, start.end() - 1, at);
+  const auto edge = static_cast<std::size_t>(behind - start.begin()) - 1;
+  return points[edge] + along[edge] * (at - start[edge]);
+}
+
+std::pair<std::size_t, std::size_t> PlaneChain::edges_within(double from, double to) const {
+  const auto vertices_up_to = [&](double at) {
+    return static_cast<std::size_t>(std::upper_bound(start.begin(), start.end(), at) - start.begin());
+  };
+  const std::size_t before = vertices_up_to(from), behind = vertices_up_to(to);
+  return {before > 2 ? before - 2 : 0, std::min(behind + 1, along.size())};
 }
 
 }  // namespace marrow

@@ -1,7 +1,12 @@
 // The place of a point on a polyline by planes that turn along it, instead of by its nearest point.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "field/number/functions.h"
@@ -14,6 +19,7 @@ template <Number X>
 struct PlanePlace {
   X at;
   int crossing;
+  std::size_t edge;  ///< on which it is
 };
 
 /// A plane at each vertex, half-way between its edges, or across the edge at an end; along an edge the planes between
@@ -26,14 +32,24 @@ struct PlaneChain {
 
   explicit PlaneChain(std::span<const Vec3d> points);
   double length() const { return start.back(); }
+  /// All that a stretch of arc lengths meets, and one more on either side, whatever rounding does: from the first up
+  /// to, but without, the last.
+  std::pair<std::size_t, std::size_t> edges_within(double from, double to) const;
 
   /// Calls visit(place) for each place of a point, at least one.
   template <Number X, class Visit>
   void for_each_place(const Vec3<X>& p, Visit visit) const;
   /// Calls visit(places, certain, may_tear) with all places that points of a box may have. Of the places of a `certain`
   /// group, every point has one. Where `may_tear`, a place of the group may vanish within the box.
+  template <class Visit>
+  void for_each_group(const Vec3<Interval>& box, Visit visit) const;
+  /// Calls visit(place) for those on one edge alone. Ends of the polyline are not on an edge.
   template <Number X, class Visit>
-  void for_each_group(const Vec3<X>& p, Visit visit) const;
+  void places_on_edge(const Vec3<X>& p, std::size_t edge, Visit visit) const;
+  static constexpr std::size_t no_edge = 0xffffffff;
+
+  /// At an arc length.
+  Vec3d position(double at) const;
 
  private:
   // Rounding must not lose a place between two edges.
@@ -43,8 +59,6 @@ struct PlaneChain {
   X height(const Vec3<X>& p, std::size_t vertex) const {
     return dot(p - constant<X>(points[vertex]), constant<X>(normal[vertex]));
   }
-  template <Number X, class Visit>
-  void places_on_edge(const Vec3<X>& p, std::size_t edge, Visit visit) const;
 };
 
 /// Real roots u of a u^2 + b u + c, with the sign of the slope there: c/q and q/a for the q that does not cancel.
@@ -77,7 +91,7 @@ void PlaneChain::places_on_edge(const Vec3<X>& p, std::size_t edge, Visit visit)
   const double length = start[edge + 1] - start[edge];
   roots_of_quadratic(-dot(dd, dr), b, c, [&](const X& u, int crossing) {
     if (!(upper(u) >= -slack && lower(u) <= 1 + slack)) return;
-    visit(PlanePlace<X>{X(start[edge]) + X(length) * clamp(u, 0, 1), crossing});
+    visit(PlanePlace<X>{X(start[edge]) + X(length) * clamp(u, 0, 1), crossing, edge});
   });
 }
 
@@ -91,47 +105,60 @@ void PlaneChain::for_each_place(const Vec3<X>& p, Visit visit) const {
 
 /// Between two vertices whose planes the whole box is on different sides of, there is a place for each point; seen from
 /// far before, a point is ahead of the first plane, and behind the last seen from far behind.
-template <Number X, class Visit>
-void PlaneChain::for_each_group(const Vec3<X>& p, Visit visit) const {
-  std::vector<PlanePlace<X>> group;
+template <class Visit>
+void PlaneChain::for_each_group(const Vec3<Interval>& box, Visit visit) const {
+  std::vector<PlanePlace<Interval>> group;
   int before = 1;
   const auto settle = [&](int side) {
     if (side == 0) return;
     bool torn = side == before;
-    for (const PlanePlace<X>& place : group) torn = torn || place.crossing != side;
-    if (!group.empty()) visit(std::span<const PlanePlace<X>>(group), side != before, torn);
+    for (const PlanePlace<Interval>& place : group) torn = torn || place.crossing != side;
+    if (!group.empty()) visit(std::span<const PlanePlace<Interval>>(group), side != before, torn);
     group.clear();
     before = side;
   };
-  const auto side_of = [](const X& h) { return lower(h) > 0 ? 1 : upper(h) < 0 ? -1 : 0; };
   for (std::size_t k = 0; k < points.size(); ++k) {
-    const X h = height(p, k);
-    if (k == 0 && lower(h) <= 0) group.push_back({X(0.0), -1});
-    settle(side_of(h));
-    if (k + 1 < points.size()) places_on_edge(p, k, [&](const PlanePlace<X>& place) { group.push_back(place); });
-    else if (upper(h) >= 0) group.push_back({X(length()), -1});
+    const Interval h = height(box, k);
+    if (k == 0 && h.lo <= 0) group.push_back({Interval(0), -1, no_edge});
+    settle(h.lo > 0 ? 1 : h.hi < 0 ? -1 : 0);
+    if (k + 1 < points.size())
+      places_on_edge(box, k, [&](const PlanePlace<Interval>& place) { group.push_back(place); });
+    else if (h.hi >= 0) group.push_back({Interval(length()), -1, no_edge});
   }
   settle(-1);
 }
 
 /// The largest of fields at places of which some may not be there.
-template <Number X>
 class LargestOfPlaces {
  public:
   struct Candidate {
-    X place;
+    PlanePlace<Interval> place;
     Interval field;
     bool may_tear;
+    std::size_t group;
   };
-  /// A group, with field(place) for the bounds at one.
+  /// A group, with at_most(place), which may be infinite, for the field at one.
+  template <class AtMost>
+  void add(std::span<const PlanePlace<Interval>> group, bool certain, bool may_tear, const AtMost& at_most) {
+    for (const PlanePlace<Interval>& place : group)
+      all_.push_back({place, Interval(0, at_most(place.at)), may_tear, groups_.size()});
+    groups_.push_back({certain ? group.size() : 0, std::numeric_limits<double>::infinity()});
+  }
+  /// Asks field(place) for bounds, the likely ones first: until no other can raise value(), or, if all that count are
+  /// wanted, until no other can have the largest.
   template <class Field>
-  void add(std::span<const PlanePlace<X>> group, bool certain, bool may_tear, Field field) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const PlanePlace<X>& place : group) {
-      all_.push_back({place.at, field(place.at), may_tear});
-      least = std::min(least, all_.back().field.lo);
+  void settle(const Field& field, bool all_that_count) {
+    std::ranges::stable_sort(all_, std::ranges::greater(), [](const Candidate& c) { return c.field.hi; });
+    double most = 0;
+    for (Candidate& c : all_) {
+      if (c.field.hi < (all_that_count ? sure_ : std::max(sure_, most))) break;
+      c.field = field(c.place.at);
+      most = std::max(most, c.field.hi);
+      Group& group = groups_[c.group];
+      group.least = std::min(group.least, c.field.lo);
+      if (group.waiting > 0 && --group.waiting == 0) sure_ = std::max(sure_, group.least);
+      if (most == std::numeric_limits<double>::infinity()) break;
     }
-    if (certain) sure_ = std::max(sure_, least);
   }
   Interval value() const {
     Interval most = sure_;
@@ -140,13 +167,18 @@ class LargestOfPlaces {
   }
   /// Those that may have the largest field.
   template <class Visit>
-  void for_each_that_counts(Visit visit) const {
+  void for_each_that_counts(const Visit& visit) const {
     for (const Candidate& c : all_)
       if (c.field.hi >= sure_) visit(c);
   }
 
  private:
+  struct Group {
+    std::size_t waiting;  ///< places to be asked before the least of them is sure; 0: it never is
+    double least;
+  };
   std::vector<Candidate> all_;
+  std::vector<Group> groups_;
   double sure_ = 0;
 };
 

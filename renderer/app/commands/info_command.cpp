@@ -42,17 +42,22 @@ const char* kind_of(const MaterialDescription& material) {
 }
 
 // What does not go through the tracer of blends, and why: what is slow of a scene is found here.
-Json general_parts(const FieldDescription& field) {
+Json general_parts(const FieldProgram& surface) {
   std::map<std::string, std::size_t> reasons;
-  if (const auto surface = compile_surface(field)) {
-    for (const PlacedBlend& part : surface->parts())
-      if (const std::string reason = untraceable_part(part.blend); !reason.empty()) ++reasons[reason];
-    for (const FieldTree& tree : surface->trees())
-      if (take_apart(tree).rest) ++reasons["operators, warps and bounded primitives"];
-  }
+  for (const PlacedBlend& part : surface.parts())
+    if (const std::string reason = untraceable_part(part.blend); !reason.empty()) ++reasons[reason];
+  for (const FieldTree& tree : surface.trees())
+    if (take_apart(tree).rest) ++reasons["operators, warps and bounded primitives"];
   Json parts = Json::array();
   for (const auto& [reason, count] : reasons) parts.push_back({{"parts", count}, {"because", reason}});
   return parts;
+}
+
+// Blends alone are their own surface.
+Json general_parts(const FieldProgram& program, const FieldDescription& field) {
+  if (program.trees().empty()) return general_parts(program);
+  const auto surface = compile_surface(field);
+  return surface ? general_parts(*surface) : Json::array();
 }
 
 Json object_info(const ObjectDescription& object, const FieldObject* field) {
@@ -62,7 +67,7 @@ Json object_info(const ObjectDescription& object, const FieldObject* field) {
                           info["primitives"] = field ? primitive_count(field->program) : 0;
                           info["blends"] = field ? field->program.parts().size() : 0;
                           info["extent"] = field ? corners(extent(field->program)) : nullptr;
-                          info["general_tracer"] = field ? general_parts(description) : Json::array();
+                          info["general_tracer"] = field ? general_parts(field->program, description) : Json::array();
                         },
                         [&](const PlaneShape&) { info["kind"] = "plane"; },
                         [&](const MeshShape& mesh) {
