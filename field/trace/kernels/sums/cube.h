@@ -1,28 +1,58 @@
 // Bounds of the field over a cube. Part of block_kernels_<set>.cpp.
 
-// Of sixteen sources over the ball of this radius about p. With d the distance of a source, w (d -+ R)^-m bounds a term
+// Sums over sources, in lanes: f_high, the change of G over m, the sum of G at p over -m, f_low; and the largest R / d.
+struct CubeLanes {
+  V16 sums[12] = {}, nearest{};
+};
+
+// Of sources over the ball of this radius about p. With d the distance of a source, w (d -+ R)^-m bounds a term
 // of f, and m w tau ((d-R)^-(m+1) - d^-(m+1)) the change of one of G.
 struct CubeTerms {
+  static constexpr int count = 6;  // of sums in CubeLanes
   float p[3], radius;
 
-  // a: f_high, the change of G over m, the sum of G at p over -m, f_low; `nearest`: the largest R / d.
+  // Of the sources in a register: the way to p, 1 / d and 1 / (1 - q^2), q = R / d, from one division and one root.
+  struct Ready {
+    Native x, y, z, inverse, both;
+  };
+  Ready ready(const float* at) const {
+    const Native x = p[0] - load_native(at), y = p[1] - load_native(at + 16), z = p[2] - load_native(at + 32);
+    const Native d2 = larger(x * x + y * y + z * z, Native{} + 1e-12F);  // at p itself: far less than R away
+    const Native gap = larger(d2 - radius * radius, 1e-3F * d2), of_both = 1.0F / (gap * d2);
+    return {x, y, z, root_of(d2) * (gap * of_both), d2 * of_both * d2};
+  }
   template <int Exponent>
-  void add(const float* group, int exponent, V16 (&a)[12], V16& nearest) const {
-    const V16 dx = p[0] - load(group), dy = p[1] - load(group + 16), dz = p[2] - load(group + 32);
-    const V16 share = load(group + 48), tau = load(group + 64);
-    const V16 d2 = dx * dx + dy * dy + dz * dz, inv = 1.0F / d2, inv_d = root_of(inv), q = radius * inv_d;
+  void add(const Ready& s, const float* at, int exponent, Native (&a)[count], Native& nearest) const {
+    const Native share = load_native(at + 48), tau = load_native(at + 64), q = radius * s.inverse;
     // 1 / (1 - q), where no source comes into the ball, and at most 1 / (1 + q)
-    const V16 both = 1.0F / larger(1.0F - q * q, splat(1e-3F)), stretch = (1.0F + q) * both,
-              shrink = larger(1.0F - q, V16{}) * both;
-    const V16 w0 = field_of<Exponent>(share, tau, inv, exponent), k1 = w0 * tau * inv_d, k2 = k1 * inv_d;
-    const V16 raised = inverse_power<Exponent>(stretch * stretch, exponent);
+    const Native stretch = (1.0F + q) * s.both, shrink = larger(1.0F - q, Native{}) * s.both;
+    const int m = Exponent > 0 ? Exponent : exponent;
+    const Native ratio = tau * s.inverse, w0 = share * power_of(ratio, m), k1 = w0 * ratio, k2 = k1 * s.inverse;
+    const Native raised = power_of(stretch, m);
     a[0] += w0 * raised;
     a[1] += k1 * (raised * stretch - 1.0F);
-    a[2] += k2 * dx;
-    a[3] += k2 * dy;
-    a[4] += k2 * dz;
-    a[5] += w0 * inverse_power<Exponent>(shrink * shrink, exponent);
-    nearest = larger(nearest, select(share > 0.0F, q, V16{}));
+    a[2] += k2 * s.x;
+    a[3] += k2 * s.y;
+    a[4] += k2 * s.z;
+    a[5] += w0 * power_of(shrink, m);
+    nearest = larger(nearest, select(share > 0.0F, q, Native{}));
+  }
+  // One register of lanes after the other, so that sums stay in registers.
+  template <int Exponent>
+  CubeLanes lanes_of(const float* group, int groups, int exponent) const {
+    Native a[count][natives] = {}, closest[natives] = {};
+    for (int part = 0; groups > 0 && part < natives; ++part) {
+      Native of_part[count] = {}, nearest{};
+      const auto put = [&](const float* at, const Ready& s) { add<Exponent>(s, at, exponent, of_part, nearest); };
+      for_each_source<Ready>(
+          group + part * native_lanes, groups, floats_per_group, [&](const float* at) { return ready(at); }, put, put);
+      for (int i = 0; i < count; ++i) a[i][part] = of_part[i];
+      closest[part] = nearest;
+    }
+    CubeLanes whole;
+    for (int i = 0; i < count; ++i) whole.sums[i] = joined(a[i]);
+    whole.nearest = joined(closest);
+    return whole;
   }
   // The largest (R / d)^2.
   float nearness(const float* group) const {
@@ -36,14 +66,14 @@ struct CubeSums {
   float f_high = 0, g_change = 0, g[3] = {}, f_low = 0;
   bool touches = false;
 
-  void add(const V16 (&a)[12], V16 nearest, float m) {
+  void add(const CubeLanes& a, float m) {
     float s[16];
-    sum_lanes(a, s);
+    sum_lanes(a.sums, s);
     f_high += s[0];
     g_change += m * s[1];
     for (int i = 0; i < 3; ++i) g[i] -= m * s[2 + i];
     f_low += s[5];
-    if (!(largest_lane(nearest) < 0.99F)) touches = true;
+    if (!(largest_lane(a.nearest) < 0.99F)) touches = true;
   }
   void add(const CubeSums& more) {
     f_high += more.f_high;
@@ -77,10 +107,8 @@ struct CubeSummer {
 
   template <int Exponent>
   void add(const float* group, int groups, int exponent) const {
-    V16 a[12] = {}, nearest{};
-    for (int k = 0; k < groups; ++k, group += floats_per_group)
-      cube.template add<Exponent>(group, exponent, a, nearest);
-    out.add(a, nearest, static_cast<float>(Exponent > 0 ? Exponent : exponent));
+    out.add(cube.template lanes_of<Exponent>(group, groups, exponent),
+            static_cast<float>(Exponent > 0 ? Exponent : exponent));
   }
 };
 
@@ -104,28 +132,24 @@ struct OctantsSummer {
     constexpr float far_distances = 2;
     constexpr int most_near = 64;  // groups beyond these are bounded as if they were far
     const float m = static_cast<float>(Exponent > 0 ? Exponent : exponent);
-    const float* listed[most_near];
+    alignas(64) float listed[most_near * floats_per_group];
     int count = 0;
     float nearness = 0;
     for (int k = 0; k < groups; ++k) nearness = max_of(nearness, cube.nearness(group + k * floats_per_group));
     const float near_from = root_of(nearness) / far_distances;
-    V16 a[12] = {}, nearest{};
+    CubeLanes of_far;
     for (int k = 0; k < groups; ++k, group += floats_per_group) {
-      V16 of_group[12] = {}, here{};
-      cube.template add<Exponent>(group, exponent, of_group, here);
-      if (count < most_near && !(largest_lane(here) < near_from)) {
-        listed[count++] = group;
+      const CubeLanes here = cube.template lanes_of<Exponent>(group, 1, exponent);
+      if (count < most_near && !(largest_lane(here.nearest) < near_from)) {
+        __builtin_memcpy(listed + count++ * floats_per_group, group, floats_per_group * sizeof(float));
         continue;
       }
-      for (int i = 0; i < 6; ++i) a[i] += of_group[i];
-      nearest = larger(nearest, here);
+      for (int i = 0; i < CubeTerms::count; ++i) of_far.sums[i] += here.sums[i];
+      of_far.nearest = larger(of_far.nearest, here.nearest);
     }
-    far.add(a, nearest, m);
-    for (int octant = 0; octant < 8; ++octant) {
-      V16 b[12] = {}, closest{};
-      for (int k = 0; k < count; ++k) octants[octant].template add<Exponent>(listed[k], exponent, b, closest);
-      near[octant].add(b, closest, m);
-    }
+    far.add(of_far, m);
+    for (int octant = 0; octant < 8; ++octant)
+      near[octant].add(octants[octant].template lanes_of<Exponent>(listed, count, exponent), m);
   }
 };
 

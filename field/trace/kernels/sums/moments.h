@@ -142,14 +142,14 @@ inline void add_octant(const float* group, int groups, int exponent, const float
               reach = load(group + 176);
     const V16 d = root_of(dx * dx + dy * dy + dz * dz), slack = 2e-6F * (1.0F + d + size);
     const V16 nearest = d - (radius + reach + slack), high = tau / larger(nearest, splat(1e-4F));
-    const V16 field = share * inverse_power<Exponent>(high * high, exponent);
+    const V16 field = share * power_of(high, exponent);
     // All of a piece is within its length of the nearest point, and nowhere thinner than its thin end.
     const V16 thin = tau - select(taper < 0.0F, V16{} - taper, taper), middle = tau / larger(d, 0.5F * tau);
     const V16 low = thin / (d + size + radius + slack);
-    const V16 weight = share * inverse_power<Exponent>(middle * middle, exponent);
+    const V16 weight = share * power_of(middle, exponent);
     a[0] += field;
     a[1] += field * high;
-    a[2] += select(thin > 0.0F, share * (tau / thin) * inverse_power<Exponent>(low * low, exponent), V16{});
+    a[2] += select(thin > 0.0F, share * (tau / thin) * power_of(low, exponent), V16{});
     a[3] += weight;
     a[4] += weight * tau;
     touching = larger(touching, select(share > 0.0F, 1e-4F - nearest, splat(-1)));

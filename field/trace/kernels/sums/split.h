@@ -56,7 +56,7 @@ inline FarLanes far_lanes(const float* group, const FarQuery& query) {
   const V16 q = query.radius / larger(d, splat(1e-20F)), high = tau / larger(d, splat(1e-20F));
   FarLanes out;
   out.distance = d;
-  out.field = share * inverse_power<Exponent>(high * high, m);
+  out.field = share * power_of(high, m);
   out.gradient = static_cast<float>(m) * out.field * high;
   const V16 f_tail = series_tail<FarDegree>(q, m, query.field_series),
             g_tail = series_tail<FarDegree>(q, m + 1, query.gradient_series);
@@ -78,7 +78,7 @@ inline FarLanes far_lanes(const float* group, const FarQuery& query) {
   const V16 near = larger(d - query.radius, splat(1e-20F)), near_high = tau / near, ratio = size / near;
   const V16 slope = select(taper < 0.0F, V16{} - taper, taper);
   const V16 widened = 1.0F + slope * near / larger(size * tau, splat(1e-30F));
-  V16 scale = share * inverse_power<Exponent>(near_high * near_high, m);
+  V16 scale = share * power_of(near_high, m);
   for (int k = 1; k < m; ++k) scale = scale * widened;
   if (query.some_lean) scale = scale * widened_by_lean(group, near);
   const V16 g_scale = scale * widened * near_high;
@@ -111,7 +111,7 @@ inline SlightLanes slight_lanes(const float* group, const FarQuery& query, const
   const V16 share = load(group + 112), tau = load(group + 144);
   const V16 d = lanes_far.distance - query.radius, high = tau / larger(d, splat(1e-20F));
   SlightLanes out;
-  out.f_error = share * inverse_power<Exponent>(high * high, m);
+  out.f_error = share * power_of(high, m);
   out.g_error = static_cast<float>(m) * out.f_error * high;
   V16 slight = select(out.f_error <= query.slight_field, 1.0F - lanes_far.far, V16{});
   slight = select(out.g_error <= query.slight_gradient, slight, V16{});
