@@ -20,6 +20,7 @@
 namespace marrow {
 namespace {
 
+using test::for_each_beside;
 using test::numeric_gradient;
 using test::program_of;
 using test::Random;
@@ -115,13 +116,10 @@ TEST(AlphaRules, GradientsOfTheAngleAndOfTheCorrectedFieldAreTheDerivatives) {
     if (s.corrected < 0.2 || s.corrected > 4) continue;
     const double step = 1e-4;
     double jump = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (const double side : {-1.0, 1.0}) {
-        Vec3d q = p;
-        q[axis] += 3 * side * step;
-        jump = std::max(jump, relative(evaluate(blend, q).corrected_gradient, s.corrected_gradient));
-        jump = std::max(jump, length(alpha_at(blend, q).gradient - alpha_at(blend, p).gradient) * 0.2);
-      }
+    for_each_beside(p, 3 * step, [&](const Vec3d& q) {
+      jump = std::max(jump, relative(evaluate(blend, q).corrected_gradient, s.corrected_gradient));
+      jump = std::max(jump, length(alpha_at(blend, q).gradient - alpha_at(blend, p).gradient) * 0.2);
+    });
     if (jump > 5e-3) continue;  // a seam of the operator or of a distance segment, or very near a skeleton
     const auto angle = [&](const Vec3d& q) { return alpha_at(blend, q).value; };
     EXPECT_LE(length(numeric_gradient(angle, p, step) - alpha_at(blend, p).gradient), 2e-6) << i;

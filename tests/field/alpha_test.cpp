@@ -15,6 +15,7 @@
 namespace marrow {
 namespace {
 
+using test::for_each_beside;
 using test::mirrored_blend;
 using test::numeric_gradient;
 using test::Random;
@@ -79,12 +80,9 @@ TEST(Alpha, GradientIsTheDerivativeOfTheFieldWithAnglesPerSkeleton) {
     EXPECT_EQ(s.alpha, alpha_at(blend, p).value);
     const double step = 1e-4;
     double jump = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (const double side : {-1.0, 1.0}) {
-        Vec3d q = p;
-        q[axis] += 3 * side * step;
-        jump = std::max(jump, relative(evaluate(blend, q).corrected_gradient, s.corrected_gradient));
-      }
+    for_each_beside(p, 3 * step, [&](const Vec3d& q) {
+      jump = std::max(jump, relative(evaluate(blend, q).corrected_gradient, s.corrected_gradient));
+    });
     if (jump > 5e-3) continue;
     const auto value = [&](const Vec3d& q) { return corrected_value(blend, q); };
     const auto angle = [&](const Vec3d& q) { return alpha_at(blend, q).value; };

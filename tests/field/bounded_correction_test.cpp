@@ -235,12 +235,9 @@ TEST(BoundedCorrection, GradientsOfBlendsAreTheDerivativesOfTheirCorrectedFields
     if (s.corrected < 0.2 || s.corrected > 4) continue;
     const double step = 1e-4;
     double jump = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (const double side : {-1.0, 1.0}) {
-        Vec3d q = p;
-        q[axis] += 3 * side * step;
-        jump = std::max(jump, test::relative(evaluate(blend, q).corrected_gradient, s.corrected_gradient));
-      }
+    test::for_each_beside(p, 3 * step, [&](const Vec3d& q) {
+      jump = std::max(jump, test::relative(evaluate(blend, q).corrected_gradient, s.corrected_gradient));
+    });
     if (jump > 5e-3) continue;
     const auto value = [&](const Vec3d& q) { return corrected_value(blend, q); };
     EXPECT_LE(relative(test::numeric_gradient(value, p, step), s.corrected_gradient), 1e-5) << i;

@@ -7,6 +7,7 @@
 
 #include "field/skeleton/skeletons.h"
 #include "tests/field/random.h"
+#include "tests/field/ring_of.h"
 
 namespace marrow {
 namespace {
@@ -14,15 +15,9 @@ namespace {
 using test::numeric_gradient;
 using test::Random;
 using test::relative;
+using test::ring_of;
 
 constexpr auto second = Derivatives::Second;
-
-ArcSkeleton ring_of(double major, double radius) {
-  ArcSkeleton ring;
-  ring.major = major;
-  ring.radius_from = ring.radius_to = radius;
-  return ring;
-}
 
 Kernel random_kernel(Random& random, int i) {
   const int n = random.whole(3, 9);

@@ -12,6 +12,7 @@
 #include "tests/field/program_of.h"
 #include "tests/field/random.h"
 #include "tests/field/random_kernel.h"
+#include "tests/field/ring_of.h"
 
 namespace marrow {
 namespace {
@@ -20,15 +21,9 @@ using test::numeric_gradient;
 using test::Random;
 using test::random_kernel;
 using test::relative;
+using test::ring_of;
 
 constexpr auto second = Derivatives::Second;
-
-ArcSkeleton ring_of(double major, double radius) {
-  ArcSkeleton ring;
-  ring.major = major;
-  ring.radius_from = ring.radius_to = radius;
-  return ring;
-}
 
 // The largest kernel value over many places of a skeleton: below the field, and near it.
 template <class PlaceAt>

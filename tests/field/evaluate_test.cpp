@@ -15,6 +15,7 @@
 namespace marrow {
 namespace {
 
+using test::for_each_beside;
 using test::numeric_gradient;
 using test::Random;
 using test::random_blend;
@@ -40,14 +41,11 @@ TEST(Blend, GradientIsTheDerivativeOfTheCorrectedFieldInEveryBranch) {
     const bool branch = correction.in_cavity_branch(s.sum, s.si_norm);
     const double step = 1e-4;
     double jump = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (const double side : {-1.0, 1.0}) {
-        Vec3d q = p;
-        q[axis] += 3 * side * step;
-        const BlendSample t = evaluate(blend, q);
-        if (correction.in_cavity_branch(t.sum, t.si_norm) != branch) jump = 1;
-        jump = std::max(jump, relative(t.corrected_gradient, s.corrected_gradient));
-      }
+    for_each_beside(p, 3 * step, [&](const Vec3d& q) {
+      const BlendSample t = evaluate(blend, q);
+      if (correction.in_cavity_branch(t.sum, t.si_norm) != branch) jump = 1;
+      jump = std::max(jump, relative(t.corrected_gradient, s.corrected_gradient));
+    });
     if (jump > 5e-3) continue;
     const auto value = [&](const Vec3d& q) { return corrected_value(blend, q); };
     const double error = relative(numeric_gradient(value, p, step), s.corrected_gradient);

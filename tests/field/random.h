@@ -116,6 +116,17 @@ inline double relative(const Vec3d& a, const Vec3d& b) {
   return scale == 0 ? 0 : length(a - b) / scale;
 }
 
+/// Calls look(q) at the places this far beside p, both ways along each axis.
+template <class Look>
+void for_each_beside(const Vec3d& p, double distance, const Look& look) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const double way : {-distance, distance}) {
+      Vec3d q = p;
+      q[axis] += way;
+      look(q);
+    }
+}
+
 /// Central differences with two steps combined to fourth order.
 template <class Field>
 Vec3d numeric_gradient(const Field& field, const Vec3d& p, double step) {

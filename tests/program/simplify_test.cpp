@@ -125,7 +125,21 @@ TEST(Simplify, PlacementsOfPlacementsAreOne) {
   EXPECT_NEAR(value(*program, {2, 0, 0}), 1, 1e-12);
 }
 
-// So that blends below it have a tracer of their own.
+// Of a warp that is a placement nothing is left but that, so that blends below it have a tracer of their own.
+template <class Warp>
+void expect_placement(FieldDescription& field, const Warp& warp, FieldNodeId below, Random& random) {
+  const auto alone = compile(with_root(field, below));
+  const auto placed = compile(with_root(field, general(field, warp, {below})));
+  ASSERT_TRUE(alone && placed);
+  EXPECT_EQ(placed->parts().size(), 1u);
+  EXPECT_TRUE(placed->trees().empty());
+  for (int i = 0; i < 20; ++i) {
+    const Vec3d p = random.vector(2);
+    const double wanted = value(*alone, warp.child_point(p));
+    EXPECT_NEAR(value(*placed, p), wanted, 1e-11 * (1 + wanted));
+  }
+}
+
 TEST(Simplify, AShearPlacesWhatItSlides) {
   Random random(2026112903);
   for (int round = 0; round < 50; ++round) {
@@ -136,18 +150,7 @@ TEST(Simplify, AShearPlacesWhatItSlides) {
     Blend blend;
     blend.of = {skeleton(field, PointSkeleton{{0, 0, 0}, 0.5}),
                 skeleton(field, SegmentSkeleton{{0.4, 0, 0}, {1, 0.5, 0}, 0.3, 0.2})};
-    const FieldNodeId pair = field.add({.what = blend, .where = {}});
-    const auto alone = compile(with_root(field, pair));
-    const FieldNodeId sheared = general(field, shear, {pair});
-    const auto placed = compile(with_root(field, sheared));
-    ASSERT_TRUE(alone && placed);
-    EXPECT_EQ(placed->parts().size(), 1u);
-    EXPECT_TRUE(placed->trees().empty());
-    for (int i = 0; i < 20; ++i) {
-      const Vec3d p = random.vector(2);
-      const double wanted = value(*alone, shear.child_point(p));
-      EXPECT_NEAR(value(*placed, p), wanted, 1e-11 * (1 + wanted));
-    }
+    expect_placement(field, shear, field.add({.what = blend, .where = {}}), random);
   }
 }
 
@@ -158,16 +161,7 @@ TEST(Simplify, ATaperOfOneWidthPlacesWhatItWidens) {
     Taper taper{random.vector(1), normalize(random.vector(1)), 1, width, width};
     FieldDescription field;
     const FieldNodeId point = skeleton(field, PointSkeleton{random.vector(1), 0.5});
-    const auto alone = compile(with_root(field, point));
-    const auto placed = compile(with_root(field, general(field, taper, {point})));
-    ASSERT_TRUE(alone && placed);
-    EXPECT_EQ(placed->parts().size(), 1u);
-    EXPECT_TRUE(placed->trees().empty());
-    for (int i = 0; i < 20; ++i) {
-      const Vec3d p = random.vector(2);
-      const double wanted = value(*alone, taper.child_point(p));
-      EXPECT_NEAR(value(*placed, p), wanted, 1e-11 * (1 + wanted));
-    }
+    expect_placement(field, taper, point, random);
     taper.end *= 1.001;
     EXPECT_TRUE(compile(with_root(field, general(field, taper, {point})))->parts().empty());
   }

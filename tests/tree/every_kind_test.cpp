@@ -3,24 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/tree/kinds_of.h"
 #include "tests/tree/laws_in_doubles.h"
 #include "tests/tree/small_tree.h"
 
 namespace marrow::test {
 namespace {
-
-template <class Variant>
-struct KindsOf;
-template <class... Kinds>
-struct KindsOf<std::variant<Kinds...>> {
-  using type = testing::Types<Kinds...>;
-};
-struct NameOfKind {
-  template <class Kind>
-  static std::string GetName(int) {
-    return std::string(info_of_kind<Kind>().name);
-  }
-};
 
 template <class Kind>
 class EveryKind : public testing::Test {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "field/tree/machine.h"
+#include "tests/tree/kinds_of.h"
 #include "tests/tree/laws_in_doubles.h"
 
 namespace marrow::test {
@@ -103,18 +104,6 @@ TEST(RandomTree, WeightsOfItsLeavesSumToOne) {
   EXPECT_GT(many, 60);
 }
 
-template <class Variant>
-struct KindsOf;
-template <class... Kinds>
-struct KindsOf<std::variant<Kinds...>> {
-  using type = testing::Types<Kinds...>;
-};
-struct NameOfKind {
-  template <class Kind>
-  static std::string GetName(int) {
-    return std::string(info_of_kind<Kind>().name);
-  }
-};
 template <class Kind>
 class LeafWeights : public testing::Test {};
 using Kinds = tree::Extended<AnyNode, AffineWarp, CrispUnion>::type;
