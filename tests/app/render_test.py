@@ -103,6 +103,18 @@ class RenderTest(ProgramTest):
             self.assertLess(time.monotonic() - start, 10)
         self.assertEqual(self.files(), [scene])
 
+    def test_what_the_scene_is_made_from_is_not_replaced(self):
+        scene = self.write("point.yaml", POINT)
+        self.expect(0, "render", scene, "--spp", "1", "-o", "sky.exr")
+        lit = self.write("sky.yaml", POINT.replace("lights:", "lights:\n  - image: {file: sky.exr}"))
+        before = (self.folder / "sky.exr").read_bytes()
+        self.assertIn("sky.exr", self.expect(73, "render", lit, "--spp", "1").stderr)
+        self.assertEqual((self.folder / "sky.exr").read_bytes(), before)
+        (self.folder / "scene.png").write_text(POINT)
+        self.expect(73, "render", "scene.png", "--spp", "1")
+        self.expect(73, "slice", "scene.png", "--plane", "z=0", "-o", "scene.png")
+        self.assertEqual((self.folder / "scene.png").read_text(), POINT)
+
     def test_a_full_disk_is_an_error(self):
         scene = self.write("point.yaml", POINT)
         self.assertIn("/dev/full", self.expect(74, "render", scene, "-o", "/dev/full").stderr)

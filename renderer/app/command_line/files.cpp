@@ -55,6 +55,15 @@ Status check_writable(const fs::path& path) {
   return try_to_make_a_file(folder, path);
 }
 
+Status check_apart(const fs::path& output, const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs) {
+    std::error_code error;
+    if (is_special(output) || !fs::equivalent(output, input, error) || error) continue;
+    return with_hint(failure("cannot be written: the scene is made from it", output.string()), "-o gives another name");
+  }
+  return Done{};
+}
+
 bool is_special(const fs::path& path) {
   std::error_code error;
   const auto type = fs::status(path, error).type();

@@ -30,12 +30,14 @@ struct Stop {
   ExitCode code;
 };
 
-std::variant<Preparation, Stop> prepare(const RenderCommand& command, const FilmDescription& film) {
+std::variant<Preparation, Stop> prepare(const RenderCommand& command, const SceneDescription& scene,
+                                        const ReadRecord& record) {
   Preparation ready;
   auto outputs = choose_outputs(command);
   if (!outputs) return Stop{outputs.why(), ExitCode::Usage};
   ready.outputs = *outputs;
-  if (auto problems = unwritable(ready.outputs); !problems.empty()) return Stop{problems, ExitCode::CannotCreate};
+  if (auto problems = unwritable(ready.outputs, files_of(scene, record)); !problems.empty())
+    return Stop{problems, ExitCode::CannotCreate};
   if (command.ocio) {
     if (auto status = check_readable(*command.ocio); !status) return Stop{status.why(), ExitCode::NoInput};
   }
@@ -45,7 +47,7 @@ std::variant<Preparation, Stop> prepare(const RenderCommand& command, const Film
     ready.display = std::move(*display);
   }
   if (command.crop) {
-    auto window = resolve(*command.crop, film.width, film.height);
+    auto window = resolve(*command.crop, scene.film.width, scene.film.height);
     if (!window) return Stop{window.why(), ExitCode::Usage};
     ready.crop = *window;
   }
@@ -75,7 +77,7 @@ ExitCode run(const RenderCommand& command) {
   const auto scene = read_and_report(command.scene, record);
   if (!scene) return exit_code_of_failed_load(command.scene);
   report(picture_advice(*scene, command.scene), record.sources, ExitCode::Ok);
-  const auto prepared = prepare(command, scene->film);
+  const auto prepared = prepare(command, *scene, record);
   if (const auto* stop = std::get_if<Stop>(&prepared)) return report(stop->why, stop->code);
   const auto& ready = std::get<Preparation>(prepared);
 

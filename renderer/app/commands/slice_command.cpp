@@ -83,7 +83,9 @@ ExitCode run(const SliceCommand& command) {
   if (!scene) return exit_code_of_failed_load(command.scene);
   const auto fields = select_fields(*scene, command.object);
   if (!fields) return report(fields.why(), ExitCode::Usage);
-  if (const auto status = check_writable(command.output); !status) return report(status.why(), ExitCode::CannotCreate);
+  auto status = check_apart(command.output, files_of(scene->description, record));
+  if (status) status = check_writable(command.output);
+  if (!status) return report(status.why(), ExitCode::CannotCreate);
 
   SliceRequest request = command.request;
   request.interrupted = &interruption_flag();

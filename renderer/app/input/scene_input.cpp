@@ -65,6 +65,13 @@ std::optional<SceneDescription> read_and_report(const SceneInput& input, ReadRec
   return reported(read(input, record), record);
 }
 
+std::vector<std::filesystem::path> files_of(const SceneDescription& scene, const ReadRecord& record) {
+  std::vector<std::filesystem::path> files = record.files;
+  for (const LightDescription& light : scene.lights)
+    if (const auto* image = std::get_if<ImageLight>(&light.what)) files.push_back(image->file);
+  return files;
+}
+
 ExitCode exit_code_of_failed_load(const SceneInput& input) {
   std::error_code error;
   const bool readable = std::filesystem::is_regular_file(input.path, error) && access(input.path.c_str(), R_OK) == 0;

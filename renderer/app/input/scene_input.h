@@ -32,6 +32,9 @@ Result<LoadedScene> load(const SceneInput&, ReadRecord& record);
 std::optional<LoadedScene> load_and_report(const SceneInput&, ReadRecord& record);
 std::optional<SceneDescription> read_and_report(const SceneInput&, ReadRecord& record);
 
+/// All files that the scene was or will be made from: those that were read, and the images of its lights.
+std::vector<std::filesystem::path> files_of(const SceneDescription&, const ReadRecord&);
+
 /// NoInput when the scene's file is not there or cannot be read, else BadInput: how a command whose load() failed ends.
 ExitCode exit_code_of_failed_load(const SceneInput&);
 

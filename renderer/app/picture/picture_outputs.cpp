@@ -30,11 +30,13 @@ Result<PictureOutputs> choose_outputs(const RenderCommand& command) {
   return outputs;
 }
 
-Diagnostics unwritable(const PictureOutputs& outputs) {
+Diagnostics unwritable(const PictureOutputs& outputs, const std::vector<std::filesystem::path>& inputs) {
   Diagnostics problems;
   for (const auto& path : {outputs.exr, outputs.png}) {
     if (!path) continue;
-    if (const auto status = check_writable(*path); !status) problems.push_back(status.why().front());
+    auto status = check_apart(*path, inputs);
+    if (status) status = check_writable(*path);
+    if (!status) problems.push_back(status.why().front());
   }
   return problems;
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "field/base/result.h"
 #include "renderer/app/command_line/commands.h"
@@ -17,7 +18,7 @@ struct PictureOutputs {
 /// Errors: an ending that is neither .exr nor .png; two PNG files.
 Result<PictureOutputs> choose_outputs(const RenderCommand&);
 
-/// Every output that cannot be written.
-Diagnostics unwritable(const PictureOutputs&);
+/// Every output that cannot be written, or is one of these files, which the scene is made from.
+Diagnostics unwritable(const PictureOutputs&, const std::vector<std::filesystem::path>& inputs);
 
 }  // namespace marrow
