@@ -30,7 +30,7 @@ class KeyCheck {
   void check(const char* name, double x, const form::Real& r) const { range(name, x, r.min, r.max, r.min_open); }
   void check(const char* name, double x, const form::Angle& a) const {
     constexpr double degree = 3.14159265358979323846 / 180;
-    range(name, x / degree, a.min_deg, a.max_deg, false);
+    range(name, x / degree * (1 - 0x1p-51), a.min_deg, a.max_deg, false);  // a limit in degrees was rounded twice
   }
   void check(const char* name, int x, const form::Whole& w) const { range(name, x, w.min, w.max, false); }
   void check(const char*, bool, const form::Switch&) const {}

@@ -51,6 +51,12 @@ class CheckTest(ProgramTest):
             self.assertEqual(self.expect(0, "check", dark, "-D", quiet).stderr, "")
         self.assertIn("no object", self.expect(0, "check", self.write("empty.yaml", "marrow: 1\n")).stderr)
 
+    def test_a_limit_in_degrees_is_allowed_itself(self):
+        for angle in ("1e9", "-1e9", "1e9deg"):
+            turned = POINT[:POINT.index("    field:")] + f"    field: {{twist: {{angle: {angle}, of: {{box: {{}}}}}}}}\n"
+            self.expect(0, "check", self.write("turned.yaml", turned))
+        self.expect(65, "check", self.write("turned.yaml", turned.replace("1e9deg", "1.001e9")))
+
     def test_overrides_are_checked_like_the_file(self):
         scene = self.write("point.yaml", POINT)
         self.expect(0, "check", scene, "-D", "camera.fov=20", "-D", "render.spp=9")
