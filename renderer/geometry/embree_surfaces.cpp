@@ -15,8 +15,6 @@ namespace {
 
 std::vector<SolidPart> whole_elements(const Solid& solid) { return solid.Solid::parts(); }
 
-double longest_side(const Box3& box) { return max_component(box.size()); }
-
 double area_of(const Box3& box) {
   const Vec3d s = box.size();
   return s.x * s.y + s.y * s.z + s.z * s.x;
@@ -52,6 +50,7 @@ Result<std::unique_ptr<EmbreeSurfaces>> EmbreeSurfaces::make(std::vector<PlacedS
     elements.emplace_back(p.solid.get(), p.object, whole_elements(*p.solid));
     for (const SolidPart& element : elements.back().parts)
       s->smallest_element_ = std::min(s->smallest_element_, longest_side(element.box));
+    s->smallest_body_ = std::min(s->smallest_body_, p.solid->smallest_detail());
   }
   auto whole = PartHierarchy::make(s->device_.get(), std::move(elements));
   if (!whole) return whole.why();
@@ -219,13 +218,16 @@ PartHierarchy::Hit EmbreeSurfaces::nearest_on(const Ray& ray, std::vector<RayVis
   return found;
 }
 
-// Whether the place of a hit is known as finely as surfaces are: to 1e-5 of the local radius, of which an element has
-// at most sixteen along its side. ray.at() rounds the origin, the way, and their sum.
-bool EmbreeSurfaces::is_resolved(const PartHierarchy::Hit& found, const Ray& ray) const {
+// Whether rounding of the places of a ray stays below the tolerance of traced fields in whatever it may come to before
+// its end; else the smallest body may lie beside the ray as well as in its way.
+bool EmbreeSurfaces::is_resolved(const PartHierarchy::Hit& found, double end, const Ray& ray) const {
+  if (extent_.empty()) return true;
   constexpr double finest = 1e-5 / 16;
-  const double rounding = 0x1p-52 * (max_component(abs(ray.origin)) + std::fabs(found.t));
+  const double through_all = length(ray.origin - extent_.center()) + 0.5 * length(extent_.size());
+  const double rounding = 0x1p-52 * (max_component(abs(ray.origin)) + std::min(end, through_all));
   if (rounding <= finest * smallest_element_) return true;
-  return rounding <= finest * longest_side(solids_[found.solid].solid->element_box(found.element));
+  if (!(rounding <= finest * smallest_body_)) return false;
+  return !found.found || rounding <= finest * longest_side(solids_[found.solid].solid->element_box(found.element));
 }
 
 // Whether no surface can have been missed before the end. Where a ray comes to the surface in the face between two
@@ -245,7 +247,7 @@ bool EmbreeSurfaces::is_decided(const PartHierarchy::Hit& found, double end, con
 RayRecord EmbreeSurfaces::record_of(const std::vector<RayVisit>& visits, const PartHierarchy::Hit& found,
                                     const PlaneHit& behind, const Ray& ray) const {
   const double end = std::min({found.reached(), behind.t, ray.t_max});
-  RayRecord r{.evaluations = 0, .certified = is_decided(found, end, ray) && (!found.found || is_resolved(found, ray))};
+  RayRecord r{.evaluations = 0, .certified = is_decided(found, end, ray) && is_resolved(found, end, ray)};
   for (const RayVisit& v : visits)
     if (v.begin < end) r.evaluations += v.evaluations;
   return r;

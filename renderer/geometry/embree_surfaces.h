@@ -85,7 +85,7 @@ class EmbreeSurfaces final : public Surfaces {
   void ask_again(PartHierarchy::Hit& found, const Ray&, std::vector<RayVisit>* visits) const;
   bool hides(const PartHierarchy::Hit& any, const Ray&) const;
   PartHierarchy::Hit nearest_on(const Ray&, std::vector<RayVisit>*) const;
-  bool is_resolved(const PartHierarchy::Hit&, const Ray&) const;
+  bool is_resolved(const PartHierarchy::Hit&, double end, const Ray&) const;
   bool is_decided(const PartHierarchy::Hit&, double end, const Ray&) const;
   RayRecord record_of(const std::vector<RayVisit>&, const PartHierarchy::Hit&, const PlaneHit& behind,
                       const Ray&) const;
@@ -104,6 +104,7 @@ class EmbreeSurfaces final : public Surfaces {
   std::vector<PlacedPlane> planes_;
   Box3 extent_;                                                        // of all solids
   double smallest_element_ = std::numeric_limits<double>::infinity();  // its longest side
+  double smallest_body_ = std::numeric_limits<double>::infinity();  // what may be missed; see Solid::smallest_detail()
   EmbreeDevice device_;
   UnitedSolids united_;
   std::unique_ptr<const PartHierarchy> whole_;  // of whole elements

@@ -13,6 +13,7 @@ class MeshSolid final : public Solid {
   std::size_t element_count() const override { return mesh_.triangles.size(); }
   Box3 element_box(std::size_t) const override;
   Box3 extent() const override;
+  double smallest_detail() const override { return longest_side(extent()); }
   std::optional<double> hit(std::size_t, const Ray&, bool any, ElementLog&) const override;
   /// The normal is that of the triangle, on the side the ray comes from.
   void describe(std::span<const HitToDescribe>) const override;

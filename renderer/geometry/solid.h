@@ -1,6 +1,7 @@
 // A part of a scene whose space is divided into boxed elements: what one Embree geometry holds.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -63,6 +64,8 @@ struct HitToDescribe {
   SurfaceHit* hit;
 };
 
+inline double longest_side(const Box3& box) { return max_component(box.size()); }
+
 /// Immutable; safe to use from many threads. All rays and points are in world coordinates.
 class Solid {
  public:
@@ -71,6 +74,9 @@ class Solid {
   virtual Box3 element_box(std::size_t element) const = 0;
   /// About the extent of the body itself; a property of the scene, not of how its space is divided.
   virtual Box3 extent() const = 0;
+  /// The smallest size of what rays may pass by: of all elements the least longest side, or the whole of a closed mesh,
+  /// however small its triangles are.
+  virtual double smallest_detail() const;
   /// Holds all that is inside; empty where nothing is, as of a mesh.
   virtual Box3 reach() const { return {}; }
   /// The exact field in world units, 1 on the surface, whatever is traced; 0 where reach() is empty.
@@ -115,6 +121,12 @@ struct PlacedSolid {
   std::unique_ptr<Solid> solid;
   ObjectId object;
 };
+
+inline double Solid::smallest_detail() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < element_count(); ++i) least = std::min(least, longest_side(element_box(i)));
+  return least;
+}
 
 inline std::vector<SolidPart> Solid::parts() const {
   std::vector<SolidPart> parts(element_count());

@@ -92,12 +92,18 @@ objects:
         self.assertIn("1 ray", done.stderr)
         self.expect(1, "trace", "ball.yaml", "--rays", "-", "--strict", stdin=far)
 
+    def test_nothing_is_proved_where_rounding_moves_a_ray_past_a_body(self):
+        far = rows([(0, 0, 9e12, 0, 0, -1), (0, 0, 100, 0, 0, -1), (0, 0, 100, 0, 0, 1)])
+        done = self.expect(0, "trace", self.ball(), "--rays", "-", "-D", "objects.0.field.blend.of.0.point.radius=1e-6",
+                           stdin=far)
+        self.assertEqual([answer["certified"] for answer in json.loads(done.stdout)], [False, True, True])
+
     def test_bad_lines_are_all_told(self):
         lines = ["# ox oy oz dx dy dz", "0 0 6 0 0 -1", "0 0 6 0 0 0", "0 0 6 0 0 -1 2", "0 0 6 0 0 -1 -1 2",
-                 "0 0 6 0 0 -1 3 2", "0 0 six 0 0 -1", "0 0 6 0 0 -1 inf 2"]
+                 "0 0 6 0 0 -1 3 2", "0 0 six 0 0 -1", "0 0 6 0 0 -1 inf 2", "0 0 3e16 0 0 -1"]
         self.write("rays.txt", "\n".join(lines))
         done = self.expect(65, "trace", self.ball(), "--rays", "rays.txt")
-        for line in range(3, 9):
+        for line in range(3, 10):
             self.assertIn(f"rays.txt:{line}:", done.stderr)
         self.assertNotIn("rays.txt:2:", done.stderr)
         self.assertEqual(done.stdout, "")

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 
 #include <fmt/core.h>
 
 #include "renderer/app/text/number_rows.h"
+#include "renderer/scene/form.h"
 
 namespace marrow {
 namespace {
@@ -21,6 +23,9 @@ std::optional<RowProblem> read_ray(std::span<const Word> words, ListedRay& ray) 
   if (words.size() != without_range && words.size() != with_range)
     return RowProblem{fmt::format("found {} numbers", words.size()), words[0]};
   ray = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, n[6], n[7]};
+  for (std::size_t k = 0; k < 3; ++k)
+    if (std::fabs(n[k]) > largest_length)
+      return RowProblem{fmt::format("the origin lies beyond {:g}, as no scene does", largest_length), words[k]};
   if (ray.direction == Vec3d{}) return RowProblem{"the direction is 0 0 0", words[3]};
   if (ray.t_min < 0) return RowProblem{"t_min is below 0", words[6]};
   if (ray.t_max < ray.t_min) return RowProblem{"t_max is below t_min", words[7]};
