@@ -58,9 +58,9 @@ class UsageTest(ProgramTest):
         scene = self.write("point.yaml", POINT)
         slice_of = ("slice", scene, "-o", "slice.png", "--width", "16")
         self.assertEqual(self.expect(0, *slice_of, "--plane", "z=0").stderr, "")
-        self.assertIn("does not meet this window: all of it is below 0.0",
+        self.assertIn("does not meet this window: there the field is at most 0.0",
                       self.expect(0, *slice_of, "--plane", "z=4").stderr)
-        self.assertIn("all of it is above",
+        self.assertIn("there the field is at least",
                       self.expect(0, *slice_of, "--plane", "z=0", "--window=-0.01,-0.01,0.01,0.01").stderr)
         self.assertIn("slice.png", self.files())
 

@@ -45,6 +45,21 @@ TEST(Hessian, IsTheDerivativeOfTheGradientForEverySkeletonAndKernel) {
   EXPECT_GT(checked, 300);
 }
 
+// Of a ball all surfaces of one value are balls. Squares of fields leave the range of doubles at 1e-154.
+TEST(Hessian, IsThatOfABallHoweverFarAway) {
+  Random random(612);
+  for (int i = 0; i < 2000; ++i) {
+    BlendField ball;
+    ball.degree = random.whole(3, 20);
+    ball.alpha = random.between(0, 1.5);
+    ball.points.add({{0, 0, 0}, 1}, {});
+    const double distance = std::pow(10, random.between(0, 130) / ball.degree);
+    const Vec3d p = normalize(random.vector(1)).vec() * distance;
+    const Curvature c = curvature_of(evaluate(ball, p).corrected_gradient, corrected_hessian(ball, p));
+    EXPECT_NEAR(c.mean * distance, 1, 1e-9) << "degree " << ball.degree << ", " << distance << " away";
+  }
+}
+
 TEST(Curvature, IsThatOfABallAndOfATube) {
   Random random(602);
   for (int i = 0; i < 50; ++i) {

@@ -132,6 +132,15 @@ TEST(Csv, TellsAllMistakesOfATableInTheOrderOfItsRows) {
             (std::vector<std::string>{"3:11", "4:5", "4:9", "5:9", "6:4", "7:1", "8:1"}));
 }
 
+TEST(Csv, DoesNotChooseBetweenColumnsOfOneName) {
+  const std::string text = "x,y,z,radius,X\n1,2,3,4,50\n";
+  EXPECT_EQ(places_of_mistakes(csv, text), std::vector<std::string>{"1:14"});
+  SkeletonOptions by_number = thick;
+  by_number.columns.x = ColumnName{5};
+  EXPECT_TRUE(read_skeleton(csv, text, by_number, "t"));
+  EXPECT_TRUE(read_skeleton(csv, "x,y,z,radius,size,size\n1,2,3,4,5,6\n", thick, "t"));
+}
+
 struct HairText {
   std::string bytes = "HAIR";
   bool is_big = false;

@@ -61,6 +61,7 @@ TEST(Xyz, SaysWhatIsWrongAndWhere) {
   expect_file_error(xyz, "-1\n\n", 1, 1, "not a number of atoms");
   expect_file_error(xyz, "1e99\n\n", 1, 1, "not a number of atoms");
   expect_file_error(xyz, "2\n\nC 0 0 0\n", 0, 0, "2 atoms, but the file has 1");
+  expect_file_error(xyz, "1\n\nC 0 0 0\nC 9 0 0\n", 4, 1, "`C 9 0 0` follows the last atom");
   expect_file_error(xyz, "1\n\nQq 0 0 0\n", 3, 1, "`Qq` is no chemical element");
   expect_file_error(xyz, "1\n\nC 0 0\n", 3, 6, "3 columns");
   expect_file_error(xyz, "1\n\nC 0 1e16 0\n", 3, 5, "`1e16` lies beyond");

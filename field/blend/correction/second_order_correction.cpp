@@ -24,6 +24,9 @@ struct Direction {
 
 X power(const X& x, double exponent) { return pow(x, exponent); }
 
+// Without quotients of small numbers, whose second derivatives leave the range of doubles long before they do.
+X logarithm(const X& x) { return log(x * (1 / x.value)) + log(x.value); }
+
 // x_H = f e^L with L = ln(G / g) (n-1)/n, and the slope of the chord (n-1) f^(1/(n-1)) expm1(q L) / expm1(L),
 // q = n/(n-1).   [chord_to() in correction.cpp]
 struct Chord {
@@ -33,7 +36,7 @@ Chord chord_to(int n, const X& f, const X& G_squared) {
   const X root = power(f, 1.0 / (n - 1)), height = (n - 1.0) * f * root;
   if (!(G_squared.value > smallest_gradient * smallest_gradient)) return {X(0.0), (n - 1.0) * root};
   const double q = n / (n - 1.0);
-  const X log_ratio = log(G_squared / square(height)) * 0.5, step = log_ratio * (1 / q);
+  const X log_ratio = 0.5 * logarithm(G_squared) - logarithm(height), step = log_ratio * (1 / q);
   return {f * exp(step), (n - 1.0) * root * (exp_quotient(log_ratio) * q / exp_quotient(step))};
 }
 

@@ -64,10 +64,10 @@ Diagnostics doubts_about(const SliceImage& image) {
   const auto [least, most] = std::ranges::minmax(image.samples, {}, &SliceSample::value);
   if (least.value <= image.iso && image.iso <= most.value) return {};
   const bool outside = most.value < image.iso;
-  Diagnostic doubt =
-      failure(fmt::format("the surface, where the field is {}, does not meet this window: {} {:.3g}", image.iso,
-                          outside ? "all of it is below" : "all of it is above", outside ? most.value : least.value));
-  doubt.hint = "`info` tells the bounds of the surface";
+  Diagnostic doubt = failure(fmt::format(
+      "the surface, where the field is {}, does not meet this window: {} {:.3g}", image.iso,
+      outside ? "there the field is at most" : "there the field is at least", outside ? most.value : least.value));
+  doubt.hint = "`info` tells where the objects are";
   doubt.severity = Severity::Warning;
   return {doubt};
 }

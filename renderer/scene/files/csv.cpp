@@ -75,16 +75,25 @@ class CsvReader {
     const std::string& name = std::get<std::string>(wanted);
     std::vector<std::string> known;
     for (std::size_t i = 0; i < first.size(); ++i) {
-      if (first[i].text == name) return void(places_[column] = i);
+      if (first[i].text == name) take(column, first[i], i);
       if (known.size() < 100) known.emplace_back(first[i].text.substr(0, 40));
     }
+    if (has(column)) return;
     problems_.complain_of_line(first[0].place, fmt::format("the header has no column {}", quoted_word(name)),
                                suggest(name, known));
   }
 
   void find_usual(Column column, const std::vector<TableField>& first) {
     for (std::size_t i = 0; i < first.size(); ++i)
-      if (lower_case(first[i].text) == column_names[column]) return void(places_[column] = i);
+      if (lower_case(first[i].text) == column_names[column]) take(column, first[i], i);
+  }
+
+  // Which of two columns of one name is meant only the author knows.
+  void take(Column column, const TableField& field, std::size_t place) {
+    if (has(column))
+      problems_.complain(field.place, fmt::format("the header has {} twice", quoted_word(field.text)),
+                         fmt::format("choose one by its number: columns: {{{}: {}}}", column_names[column], place + 1));
+    else places_[column] = place;
   }
 
   void check_columns(const std::vector<TableField>& first, bool are_all_counted) {

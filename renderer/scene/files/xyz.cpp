@@ -61,6 +61,7 @@ class XyzReader {
     if (!problems_.is_full() && read < count)
       problems_.complain_of_file(fmt::format("the first line says {} atoms, but the file has {}", count, read),
                                  "it was cut");
+    if (problems_.none()) check_what_follows(count);
     SkeletonFile made;
     if (problems_.none()) made = skeleton_of(std::move(molecule_), options_, problems_);
     if (!problems_.none()) return problems_.take();
@@ -79,6 +80,17 @@ class XyzReader {
     problems_.complain(line.data(), quoted_word(word) + " is not a number of atoms",
                        "the first line of an XYZ file is the count of its atoms");
     return 0;
+  }
+
+  // The end, or another frame, which begins with its own count.
+  void check_what_follows(std::size_t count) {
+    std::string_view line, word;
+    while (word.empty() && lines_.next(line)) word = trimmed(line);
+    if (word.empty()) return;
+    const auto number = finite_number(word);
+    if (number && whole_number(*number)) return;
+    problems_.complain(word.data(), quoted_word(word) + " follows the last atom",
+                       fmt::format("the first line says that there are {}", count));
   }
 
   void read_atom(std::string_view line) {
