@@ -49,7 +49,10 @@ const Table<ObjectDescription>& object_table() {
   static const Table<Object> table = [] {
     Table<Object> made(
         "object", "Something to see.",
-        {key<Object>("name", &Object::name, name_of("a name"),
+        {key<Object>("name", &Object::name,
+                     checked(
+                         name_of("a name"), [](const std::string& name) { return !name.empty(); },
+                         "a name of one letter at least"),
                      "for masks, `probe` and overrides; \"object N\" when left out"),
          key<Object>("material", &Object::material, material_name(), "its material; matt grey when left out"),
          key<Object>("field", &Object::shape, field_tree(), "a surface grown on skeletons"),

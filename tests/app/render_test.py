@@ -115,6 +115,11 @@ class RenderTest(ProgramTest):
         self.expect(73, "slice", "scene.png", "--plane", "z=0", "-o", "scene.png")
         self.assertEqual((self.folder / "scene.png").read_text(), POINT)
 
+    def test_a_view_that_there_is_not_is_told_though_no_png_is_written(self):
+        scene = self.write("point.yaml", POINT)
+        self.assertIn("nope", self.expect(2, "render", scene, "-o", "point.exr", "--view", "nope").stderr)
+        self.assertEqual(self.files(), [scene])
+
     def test_a_full_disk_is_an_error(self):
         scene = self.write("point.yaml", POINT)
         self.assertIn("/dev/full", self.expect(74, "render", scene, "-o", "/dev/full").stderr)

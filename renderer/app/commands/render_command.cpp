@@ -41,10 +41,10 @@ std::variant<Preparation, Stop> prepare(const RenderCommand& command, const Scen
   if (command.ocio) {
     if (auto status = check_readable(*command.ocio); !status) return Stop{status.why(), ExitCode::NoInput};
   }
-  if (ready.outputs.png) {
+  if (ready.outputs.png || !command.view.empty()) {
     auto display = Display::open(command.ocio, {}, command.view);
     if (!display) return Stop{display.why(), ExitCode::Usage};
-    ready.display = std::move(*display);
+    if (ready.outputs.png) ready.display = std::move(*display);
   }
   if (command.crop) {
     auto window = resolve(*command.crop, scene.film.width, scene.film.height);
