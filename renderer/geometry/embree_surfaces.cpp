@@ -218,8 +218,9 @@ PartHierarchy::Hit EmbreeSurfaces::nearest_on(const Ray& ray, std::vector<RayVis
   return found;
 }
 
-// Whether rounding of the places of a ray stays below the tolerance of traced fields in whatever it may come to before
-// its end; else the smallest body may lie beside the ray as well as in its way.
+// Whether the places of a ray are known as finely as surfaces are, in whatever it may come to before its end: to 1e-5
+// of the local radius, of which an element has at most sixteen along its side. Else the smallest body may lie beside
+// the ray as well as in its way. ray.at() rounds the origin, the way, and their sum.
 bool EmbreeSurfaces::is_resolved(const PartHierarchy::Hit& found, double end, const Ray& ray) const {
   if (extent_.empty()) return true;
   constexpr double finest = 1e-5 / 16;

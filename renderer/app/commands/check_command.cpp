@@ -1,6 +1,7 @@
 // marrow check: every mistake of a scene, without rendering it.
 #include <cstdio>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
