@@ -57,14 +57,6 @@ class CheckTest(ProgramTest):
             self.expect(0, "check", self.write("turned.yaml", turned))
         self.expect(65, "check", self.write("turned.yaml", turned.replace("1e9deg", "1.001e9")))
 
-    def test_what_cannot_be_rendered_is_told(self):
-        endless = POINT[:POINT.index("    field:")] + "    field: {plane: {}}\n"
-        done = self.expect(0, "check", self.write("endless.yaml", endless))
-        self.assertIn("warning: the surface of this field has no end", done.stderr)
-        self.assertIn("endless.yaml:", done.stderr)
-        self.assertIn("ok", done.stdout)
-        self.expect(65, "render", "endless.yaml")
-
     def test_overrides_are_checked_like_the_file(self):
         scene = self.write("point.yaml", POINT)
         self.expect(0, "check", scene, "-D", "camera.fov=20", "-D", "render.spp=9")

@@ -1,7 +1,6 @@
 // marrow check: every mistake of a scene, without rendering it.
 #include <cstdio>
 #include <utility>
-#include <vector>
 
 #include <fmt/core.h>
 
@@ -11,7 +10,6 @@
 #include "renderer/app/picture/picture_advice.h"
 #include "renderer/app/report/report.h"
 #include "renderer/app/text/print.h"
-#include "renderer/geometry/build_surfaces.h"
 
 namespace marrow {
 namespace {
@@ -29,17 +27,6 @@ std::string summary(const LoadedScene& scene) {
                      counted(d.lights.size(), "light"));
 }
 
-// What cannot be rendered can still be sliced and probed: no mistake, but worth knowing. What has no place is the
-// machine's.
-Diagnostics doubts_of_rendering(const SceneDescription& scene) {
-  const auto surfaces = build_surfaces(scene, {});
-  if (surfaces) return {};
-  Diagnostics doubts = surfaces.why();
-  std::erase_if(doubts, [](const Diagnostic& d) { return d.where.file.empty(); });
-  for (Diagnostic& d : doubts) d.severity = Severity::Warning;
-  return doubts;
-}
-
 }  // namespace
 
 ExitCode run(const CheckCommand& command) {
@@ -52,10 +39,8 @@ ExitCode run(const CheckCommand& command) {
       if (d.where.file.empty()) d.where.file = command.scene.path.string();
   Diagnostics all = errors;
   all.insert(all.end(), record.warnings.begin(), record.warnings.end());
-  if (scene) {
+  if (scene)
     for (Diagnostic& d : picture_advice(scene->description, command.scene)) all.push_back(std::move(d));
-    for (Diagnostic& d : doubts_of_rendering(scene->description)) all.push_back(std::move(d));
-  }
   if (command.json) say(to_json(all) + '\n');
   else report(all, record.sources, ExitCode::Ok);
   if (!errors.empty()) return exit_code_of_failed_load(command.scene);
