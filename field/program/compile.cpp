@@ -298,7 +298,9 @@ class Compiler {
       report(child.node, "an alpha below 0 with this kernel or projection",
              "below alpha = 0 only the kernel `inverse` with `projection: paper` is defined");
     if (flatten.without_length() > 0)
-      warn(child.node, std::to_string(flatten.without_length()) + " segments have no length",
+      warn(child.node,
+           flatten.without_length() == 1 ? "a segment has no length"
+                                         : std::to_string(flatten.without_length()) + " segments have no length",
            "a segment without length adds nothing; use a point for a ball");
   }
 

@@ -26,7 +26,8 @@ const Table<CameraDescription>& camera_table() {
                    choice<Camera::Type>(
                        {{"perspective", Camera::Type::Perspective}, {"orthographic", Camera::Type::Orthographic}}),
                    "the projection"),
-       key<Camera>("from", &Camera::from, position(), "where it stands"),
+       key<Camera>("from", &Camera::from, position(),
+                   "where it stands: outside bodies or inside them, not on a surface"),
        key<Camera>("to", &Camera::to, position(), "where it looks"),
        key<Camera>("up", &Camera::up, direction(), "what is up in the picture"),
        key<Camera>("fov", &Camera::fov_deg, degrees(between(0.001, 179)), "vertical angle of view, perspective only"),

@@ -4,6 +4,16 @@ import unittest
 
 from marrow_program import BAD, POINT, SOURCE, ProgramTest
 
+NO_SURFACE = """marrow: 1
+lights: [constant: {}]
+objects:
+  - field: {plane: {normal: [0, 1, 0]}}
+  - field: {union: {of: [{sphere: {radius: 1}}, {plane: {normal: [0, 1, 0]}}]}}
+  - field: {intersection: {of: [{sphere: {radius: 1}}, {plane: {normal: [0, 1, 0]}}]}}
+  - field: {blend: {cavity: false, alpha: 0.1, of: [{point: {at: [0, 0, 0], radius: 1}}]}}
+  - field: {blend: {cavity: false, alpha: 0.9, of: [{point: {at: [0, 0, 0], radius: 1}}]}}
+"""
+
 
 class CheckTest(ProgramTest):
     def test_a_good_scene_is_counted(self):
@@ -34,6 +44,14 @@ class CheckTest(ProgramTest):
     def test_editors_get_the_name_of_a_scene_that_is_not_there(self):
         found = json.loads(self.expect(66, "check", "gone.yaml", "--format", "json").stdout)
         self.assertEqual([problem["file"] for problem in found], ["gone.yaml"])
+
+    def test_what_rays_cannot_meet_is_refused_as_by_render(self):
+        self.write("ends.yaml", NO_SURFACE)
+        told = self.expect(65, "check", "ends.yaml").stderr
+        self.assertIn("3 errors", told)
+        for line in (4, 5, 7):
+            self.assertIn(f"ends.yaml:{line}:", told)
+        self.assertEqual(told, self.expect(65, "render", "ends.yaml", "--quiet").stderr)
 
     def test_a_light_whose_picture_is_none_is_a_mistake_of_the_scene(self):
         self.write("sky.exr", "not a picture")

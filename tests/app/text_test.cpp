@@ -22,5 +22,11 @@ TEST(Split, GivesOnePieceMoreThanSeparators) {
   EXPECT_EQ(split("a,", ',').back(), "");
 }
 
+TEST(Counted, AddsAnSUnlessOne) {
+  EXPECT_EQ(counted(0, "object"), "0 objects");
+  EXPECT_EQ(counted(1, "object"), "1 object");
+  EXPECT_EQ(counted(2, "object"), "2 objects");
+}
+
 }  // namespace
 }  // namespace marrow

@@ -21,8 +21,9 @@ namespace marrow {
 /// The union. A control value of 0 begins where the other field begins; with 1 there is a crease.
 struct SoftUnion {
   static constexpr NodeInfo info{"soft_union",
-                                 "Union with a rounded crease; each side controls where the rounding begins.", 1,
-                                 any_number_of_children};
+                                 "Union with a rounded crease; each side controls where the rounding begins. Of more "
+                                 "than two children each joins the union of all before it, which is the first then.",
+                                 1, any_number_of_children};
   static constexpr bool ignores_zeros = true;
   double on_first = 0.5, on_second = 0.5;
 
@@ -67,8 +68,10 @@ struct SoftUnion {
 /// The intersection.
 struct SoftIntersection {
   static constexpr NodeInfo info{"soft_intersection",
-                                 "Intersection with a rounded crease; each side controls where the rounding begins.", 1,
-                                 any_number_of_children};
+                                 "Intersection with a rounded crease; each side controls where the rounding begins. Of "
+                                 "more than two children each meets the intersection of all before it, which is the "
+                                 "first then.",
+                                 1, any_number_of_children};
   double on_first = 1.5, on_second = 1.5;
 
   static void keys(auto&& key) {
@@ -103,10 +106,11 @@ struct SoftIntersection {
 
 /// The first child without the others: the intersection with their complements 2 - f.
 struct SoftDifference {
-  static constexpr NodeInfo info{"soft_difference",
-                                 "Its first child without the others, with rounded creases; each side controls where "
-                                 "the rounding begins.",
-                                 1, any_number_of_children};
+  static constexpr NodeInfo info{
+      "soft_difference",
+      "Its first child without the others, one after another, with rounded creases; each side "
+      "controls where the rounding begins.",
+      1, any_number_of_children};
   double on_first = 0.5, on_second = 1.5;
 
   static void keys(auto&& key) {

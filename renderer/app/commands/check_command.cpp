@@ -1,21 +1,41 @@
 // marrow check: every mistake of a scene, without rendering it.
-#include <cstdio>
+#include <algorithm>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "field/trace/blend_tracer.h"
+#include "field/tree/field_tree.h"
 #include "renderer/app/command_line/commands.h"
 #include "renderer/app/input/environment.h"
 #include "renderer/app/input/scene_input.h"
 #include "renderer/app/picture/picture_advice.h"
 #include "renderer/app/report/report.h"
 #include "renderer/app/text/print.h"
+#include "renderer/app/text/text.h"
+#include "renderer/geometry/build_surfaces.h"
 
 namespace marrow {
 namespace {
 
-std::string counted(std::size_t count, const char* noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+bool may_have_no_surface(const FieldProgram& field) {
+  return std::ranges::any_of(
+             field.parts(),
+             [](const PlacedBlend& part) { return !part.blend.cavity && !BlendTracer::refusal(part.blend).empty(); }) ||
+         std::ranges::any_of(field.trees(), [](const FieldTree& tree) {
+           const Box3 box = surface_bounds(tree);
+           return !box.empty() && !is_finite(box.size());
+         });
+}
+
+// What rays cannot meet. Building it tells; that of a large scene takes memory, so only what is in doubt is built.
+Diagnostics check_surfaces(const LoadedScene& scene) {
+  SceneDescription doubtful;
+  for (const FieldObject& field : scene.fields)
+    if (may_have_no_surface(field.program)) doubtful.objects.push_back(scene.description.objects[field.object.index()]);
+  if (doubtful.objects.empty()) return {};
+  const auto surfaces = build_surfaces(doubtful, {});
+  return surfaces ? Diagnostics{} : surfaces.why();
 }
 
 std::string summary(const LoadedScene& scene) {
@@ -33,6 +53,8 @@ ExitCode run(const CheckCommand& command) {
   ReadRecord record;
   const auto scene = load(command.scene, record);
   Diagnostics errors = scene ? check_environments(scene->description) : scene.why();
+  if (scene)
+    for (Diagnostic& d : check_surfaces(*scene)) errors.push_back(std::move(d));
   // What has no place is the scene file itself; editors want its name.
   if (command.json)
     for (Diagnostic& d : errors)

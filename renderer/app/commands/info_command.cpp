@@ -13,6 +13,7 @@
 #include "renderer/app/input/scene_input.h"
 #include "renderer/app/report/report.h"
 #include "renderer/app/text/print.h"
+#include "renderer/app/text/text.h"
 #include "renderer/geometry/build_surfaces.h"
 #include "renderer/geometry/tree_parts.h"
 
@@ -119,21 +120,16 @@ std::string box_text(const Json& box) {
   return corner("lower") + " to " + corner("upper");
 }
 
-std::string counted(const Json& number, const char* noun) {
-  const auto count = number.get<std::size_t>();
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
-
 std::string object_text(const Json& object) {
   std::string text = fmt::format("  {:<12} {}", object["name"].get<std::string>(), object["kind"].get<std::string>());
   if (object.contains("primitives"))
-    text += fmt::format(", {} in {}, {}", counted(object["primitives"], "primitive"),
-                        counted(object["blends"], "blend"), box_text(object["extent"]));
+    text += fmt::format(", {} in {}, {}", counted(object["primitives"].get<std::size_t>(), "primitive"),
+                        counted(object["blends"].get<std::size_t>(), "blend"), box_text(object["extent"]));
   if (object.contains("general_tracer"))
     for (const Json& part : object["general_tracer"])
       text += fmt::format("\n  {:<12} {} of its parts in the general tracer, which is slower: {}", "",
                           part["parts"].get<std::size_t>(), part["because"].get<std::string>());
-  if (object.contains("triangles")) text += ", " + counted(object["triangles"], "triangle");
+  if (object.contains("triangles")) text += ", " + counted(object["triangles"].get<std::size_t>(), "triangle");
   return text + '\n';
 }
 

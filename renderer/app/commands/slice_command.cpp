@@ -77,7 +77,8 @@ Diagnostics doubts_about(const SliceImage& image) {
 ExitCode run(const SliceCommand& command) {
   const auto ending = command.output.extension();
   if (ending != ".exr" && ending != ".png")
-    return report({failure("the output must end in .exr or .png", command.output.string())}, ExitCode::Usage);
+    return report({failure("the output must be a name with the ending .exr or .png", command.output.string())},
+                  ExitCode::Usage);
   ReadRecord record;
   const auto scene = load_and_report(command.scene, record);
   if (!scene) return exit_code_of_failed_load(command.scene);

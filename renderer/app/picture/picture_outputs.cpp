@@ -21,7 +21,8 @@ Result<PictureOutputs> choose_outputs(const RenderCommand& command) {
   if (ending == ".exr" || is_special(*command.output)) {
     outputs.exr = command.output;
   } else if (ending != ".png") {
-    return failure(fmt::format("the output '{}' must end in .exr or .png", command.output->string()));
+    return failure(
+        fmt::format("the output '{}' must be a name with the ending .exr or .png", command.output->string()));
   } else if (command.png) {
     return failure("-o and --png both name a PNG file; -o takes the EXR file then");
   } else {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "renderer/scene/finite_number.h"
 
 namespace marrow {
@@ -32,6 +34,10 @@ std::optional<double> parse_duration(std::string_view text) {
     text.remove_prefix(std::min(length + 1, text.size()));
   }
   return total > 0 ? std::optional(total) : std::nullopt;
+}
+
+std::string counted(std::size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 }  // namespace marrow
