@@ -1,7 +1,6 @@
 // Against values computed with 40 digits, independently of this code (reference/nary_blend_public.json).
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iostream>
 #include <map>
 #include <optional>
@@ -14,18 +13,14 @@
 #include "field/blend/blend_field.h"
 #include "field/blend/correction/correction.h"
 #include "tests/field/random.h"
+#include "tests/field/reference_values.h"
 
 namespace marrow {
 namespace {
 
 using nlohmann::json;
+using test::reference_values;
 using test::relative;
-
-const json& reference() {
-  static const json data =
-      json::parse(std::ifstream(std::string(MARROW_SOURCE_DIR) + "/tests/field/reference/nary_blend_public.json"));
-  return data;
-}
 
 Vec3d vector_of(const json& j) { return {j.at(0), j.at(1), j.at(2)}; }
 
@@ -87,7 +82,7 @@ TEST(Reference, FieldsAndGradients) {
   std::map<std::string, double> worst;
   std::map<std::string, int> not_of_this_build;
   int checked = 0;
-  for (const json& entry : reference().at("fields")) {
+  for (const json& entry : reference_values().at("fields")) {
     const std::string tag = entry.at("tag");
     const auto blend = blend_of(entry);
     if (!blend) {
@@ -115,7 +110,7 @@ TEST(Reference, FieldsAndGradients) {
 TEST(Reference, AlphaPerSkeleton) {
   int checked = 0;
   double worst = 0;
-  for (const json& entry : reference().at("alpha")) {
+  for (const json& entry : reference_values().at("alpha")) {
     BlendField blend;
     blend.degree = 3;
     blend.alpha_per_skeleton = true;
@@ -135,7 +130,7 @@ TEST(Reference, AlphaPerSkeleton) {
 TEST(Reference, AlphaByDirection) {
   int checked = 0;
   double worst = 0;
-  for (const json& entry : reference().at("alpha")) {
+  for (const json& entry : reference_values().at("alpha")) {
     std::vector<Strand> strands;
     for (std::size_t i = 0; i < entry.at("f").size(); ++i)
       strands.push_back({.field = entry.at("f")[i],
@@ -155,7 +150,7 @@ TEST(Reference, AlphaByDirection) {
 TEST(Reference, CorrectedFields) {
   int checked = 0;
   double worst = 0;
-  for (const json& entry : reference().at("fields")) {
+  for (const json& entry : reference_values().at("fields")) {
     const auto blend = blend_of(entry);
     if (!blend || !entry.contains("corrected")) continue;
     const auto s = sum_of_primitives<Derivatives::ScaleInvariant>(*blend, vector_of(entry.at("point")));
@@ -176,7 +171,7 @@ TEST(Reference, CorrectedFields) {
 TEST(Reference, Operator) {
   int checked = 0, guarded = 0;
   double worst = 0;
-  for (const json& entry : reference().at("operator")) {
+  for (const json& entry : reference_values().at("operator")) {
     const int n = entry.at("n");
     const double f = entry.at("f"), G = entry.at("G");
     for (const json& corrected : entry.at("corrected")) {

@@ -9,6 +9,7 @@
 
 #include "field/math/elementary.h"
 #include "tests/output/temporary_folder.h"
+#include "tests/source_folder.h"
 
 namespace marrow {
 namespace {
@@ -52,7 +53,7 @@ class Environment {
   Environment& operator=(const Environment&) = delete;
 };
 
-std::string embedded_text() { return read_text(MARROW_SOURCE_DIR "/renderer/output/marrow-figures.ocio"); }
+std::string embedded_text() { return read_text(test::source_folder() + "/renderer/output/marrow-figures.ocio"); }
 
 TEST(Display, StandardIsTheTransferFunctionOfSrgb) {
   const Display display = open("Standard");

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/scene/read_scene.h"
+#include "tests/source_folder.h"
 
 namespace marrow {
 namespace {
@@ -22,7 +23,7 @@ std::string content(const fs::path& path) {
 }
 
 std::vector<fs::path> bad_scenes() {
-  fs::current_path(MARROW_SOURCE_DIR);  // so that messages name files as the expectations do
+  fs::current_path(test::source_folder());  // so that messages name files as the expectations do
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator("scenes/bad"))
     if (entry.path().extension() == ".yaml") files.push_back(entry.path());

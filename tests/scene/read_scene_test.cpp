@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/scene/scene_text.h"
+#include "tests/source_folder.h"
 
 namespace marrow {
 namespace {
@@ -241,7 +242,7 @@ TEST_F(ReadScene, TheHashIsOfAllThatWasRead) {
 
 TEST_F(ReadScene, SamplesOfTheRepositoryLoad) {
   for (const char* name : {"rat_ca1_pyramidal_NMO_49821.swc", "tree.swc", "vessel.swc", "1crn.pdb", "tuft.hair"}) {
-    const std::string file = std::string(MARROW_SOURCE_DIR) + "/scenes/data/" + name;
+    const std::string file = test::source_folder() + "/scenes/data/" + name;
     EXPECT_TRUE(read("marrow: 1\nobjects:\n  - field: {skeleton: {file: " + file + "}}\n")) << name;
   }
 }

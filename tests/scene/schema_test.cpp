@@ -11,6 +11,7 @@
 
 #include "renderer/scene/field_forms.h"
 #include "renderer/scene/scene_forms.h"
+#include "tests/source_folder.h"
 
 namespace marrow {
 namespace {
@@ -46,7 +47,7 @@ TEST(Schema, EveryKeyIsDescribed) {
 
 TEST(Schema, TheReferenceInDocsIsCurrent) {
   std::ostringstream text;
-  text << std::ifstream(MARROW_SOURCE_DIR "/docs/scene-format.md").rdbuf();
+  text << std::ifstream(test::source_folder() + "/docs/scene-format.md").rdbuf();
   const std::string begin = "<!-- reference: begin -->\n", end = "<!-- reference: end -->";
   const auto from = text.str().find(begin), to = text.str().find(end);
   ASSERT_TRUE(from != std::string::npos && to != std::string::npos);

@@ -1,10 +1,9 @@
 // Precise contact: reference values of the bulges, their conditions, what contact guarantees.
 #include "field/tree/nodes/contact.h"
 
-#include <fstream>
-
 #include <nlohmann/json.hpp>
 
+#include "tests/field/reference_values.h"
 #include "tests/tree/node_laws.h"
 
 namespace marrow {
@@ -22,10 +21,8 @@ const std::vector<Bulge> bulges{PlainBulge{},
 
 // Scaled to a surface at 1.
 TEST(Contact, ReferenceValues) {
-  const json data =
-      json::parse(std::ifstream(std::string(MARROW_SOURCE_DIR) + "/tests/field/reference/nary_blend_public.json"));
   int checked = 0;
-  for (const json& e : data.at("older_papers")) {
+  for (const json& e : test::reference_values().at("older_papers")) {
     if (e.at("what") != "pcm_bulge_corrected") continue;
     ++checked;
     const double iso = e.at("iso"), t = double(e.at("f_j")) / iso, c = double(e.at("c")) / iso,

@@ -1,10 +1,9 @@
 // De Groot's better blending: reference values, his three solutions, laws.
 #include "field/tree/nodes/weighted_blend.h"
 
-#include <fstream>
-
 #include <nlohmann/json.hpp>
 
+#include "tests/field/reference_values.h"
 #include "tests/tree/node_laws.h"
 
 namespace marrow {
@@ -15,10 +14,8 @@ using test::field_of;
 
 // Scaled to a surface at 1: fields, k and g are lengths of the same scale as c.
 TEST(WeightedBlend, ReferenceValues) {
-  const json data =
-      json::parse(std::ifstream(std::string(MARROW_SOURCE_DIR) + "/tests/field/reference/nary_blend_public.json"));
   int checked = 0;
-  for (const json& e : data.at("older_papers")) {
+  for (const json& e : test::reference_values().at("older_papers")) {
     if (e.at("what") != "blobtree_gk_dij") continue;
     ++checked;
     const double c = e.at("c"), k = e.at("k"), t = e.at("t"), f = e.at("f_j"), w = e.at("w_ij");
