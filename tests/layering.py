@@ -86,7 +86,6 @@ LIBRARIES = {
     r"xxhash": ["renderer/scene/"],
     r"sleef": ["field/math/"],
     r"boost/": ["field/trace/general/crossing.cpp"],
-    r"assimp/": ["renderer/scene/files/mesh_file.cpp"],
     r"fmt/": ["field/", "materials/", "renderer/", "tests/"],
     r"(gtest|gmock)/": ["tests/"],
 }

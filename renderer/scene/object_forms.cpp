@@ -1,8 +1,6 @@
 // The table of objects, and of the shapes that are no fields.
 #include "renderer/scene/object_forms.h"
 
-#include <fmt/core.h>
-
 #include "renderer/scene/field_forms.h"
 #include "renderer/scene/files/mesh_file.h"
 
@@ -33,12 +31,11 @@ Form<MeshShape> mesh() {
     const auto wanted = map.read(v, reader);
     if (!wanted) return std::nullopt;
     const Place& at = v.find("file")->value.place;
-    const auto file = reader.open(wanted->file, at);
+    auto file = reader.open(wanted->file, at);
     if (!file) return std::nullopt;
     auto shape = read_mesh(file->bytes, wanted->file.string());
     if (shape) return std::move(*shape);
-    for (const Diagnostic& d : shape.why())
-      reader.error(at, fmt::format("`{}`: {}", wanted->file.string(), d.message), d.hint);
+    reader.report_file(wanted->file, std::move(file->bytes), shape.why());
     return std::nullopt;
   };
   return form;

@@ -1,36 +1,18 @@
 // Every byte is read through bounds that were checked before; nothing is allocated before the sizes are known to fit.
 #include "renderer/scene/files/cyhair.h"
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "renderer/scene/files/bytes.h"
 #include "renderer/scene/files/node_list.h"
 #include "renderer/scene/files/text_scan.h"
 
 namespace marrow {
 namespace {
-
-/// Whole numbers and floats of a file in either byte order.
-class Bytes {
- public:
-  Bytes(std::string_view bytes, bool is_big_endian) : bytes_(bytes), is_big_(is_big_endian) {}
-  std::uint32_t whole(std::size_t at, std::size_t size) const {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < size; ++i)
-      value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes_[at + i]))
-               << 8 * (is_big_ ? size - 1 - i : i);
-    return value;
-  }
-  double real(std::size_t at) const { return std::bit_cast<float>(whole(at, 4)); }
-
- private:
-  std::string_view bytes_;
-  bool is_big_;
-};
 
 // The layout of the header: "HAIR", then these at their offsets, then 88 bytes for people.
 constexpr std::size_t header_bytes = 128, strands_at = 4, points_at = 8, arrays_at = 12, segments_at = 16,
@@ -45,11 +27,7 @@ bool is_big_endian(std::string_view bytes) {
 class HairReader {
  public:
   HairReader(std::string_view text, const SkeletonOptions& options, const std::string& name)
-      : size_(text.size()),
-        bytes_(text, is_big_endian(text)),
-        options_(options),
-        problems_({}, name),
-        list_(options, problems_) {}
+      : bytes_(text, is_big_endian(text)), options_(options), problems_({}, name), list_(options, problems_) {}
 
   Result<SkeletonFile> read() {
     read_header();
@@ -64,9 +42,9 @@ class HairReader {
   void read_header() {
     strands_ = bytes_.whole(strands_at, 4);
     points_ = bytes_.whole(points_at, 4);
-    arrays_ = bytes_.whole(arrays_at, 4);
+    arrays_ = static_cast<std::uint32_t>(bytes_.whole(arrays_at, 4));
     segments_ = bytes_.whole(segments_at, 4);
-    thickness_ = bytes_.real(thickness_at);
+    thickness_ = bytes_.real32(thickness_at);
     if (arrays_ > AllArrays)
       return problems_.complain_of_file(fmt::format("the header names unknown arrays ({:#x})", arrays_));
     if (!(arrays_ & Points)) return problems_.complain_of_file("the file has no array of points");
@@ -78,10 +56,10 @@ class HairReader {
     first_point_ = header_bytes + segment_bytes;
     first_thickness_ = first_point_ + point_bytes;
     const std::uint64_t needed = first_thickness_ + (arrays_ & Thickness ? 4 * points_ : 0);
-    if (needed > size_)
-      return problems_.complain_of_file(
-          fmt::format("the file has {} bytes, but {} strands with {} points need {}", size_, strands_, points_, needed),
-          "it was cut, or is not what its header says");
+    if (needed > bytes_.size())
+      return problems_.complain_of_file(fmt::format("the file has {} bytes, but {} strands with {} points need {}",
+                                                    bytes_.size(), strands_, points_, needed),
+                                        "it was cut, or is not what its header says");
     if (!(arrays_ & Thickness) && !options_.radius && !(std::isfinite(thickness_) && thickness_ > 0))
       problems_.complain_of_file("the hair has no thickness", "give the skeleton a `radius`");
   }
@@ -105,8 +83,8 @@ class HairReader {
 
   void read_point(std::uint64_t strand, std::uint64_t point, bool has_parent) {
     const std::size_t at = first_point_ + 12 * point;
-    const Vec3d position{bytes_.real(at), bytes_.real(at + 4), bytes_.real(at + 8)};
-    const double thickness = arrays_ & Thickness ? bytes_.real(first_thickness_ + 4 * point) : thickness_;
+    const Vec3d position{bytes_.real32(at), bytes_.real32(at + 4), bytes_.real32(at + 8)};
+    const double thickness = arrays_ & Thickness ? bytes_.real32(first_thickness_ + 4 * point) : thickness_;
     const double radius = options_.radius ? *options_.radius : thickness / 2;
     if (!is_finite(position) || !std::isfinite(radius) || radius < 0)
       return problems_.complain_of_file(
@@ -114,7 +92,6 @@ class HairReader {
     list_.add(position, radius, has_parent ? list_.next_index() - 1 : -1);
   }
 
-  std::size_t size_;
   Bytes bytes_;
   const SkeletonOptions& options_;
   FileProblems problems_;

@@ -9,9 +9,8 @@
 
 namespace marrow {
 
-/// OBJ or PLY (ascii or binary), as the ending of `name` says. Polygons are split into triangles; points and lines
-/// are left out; positions have single precision. Errors: unknown ending, what is no mesh, no triangle, positions
-/// that are not finite.
+/// OBJ (obj_faces.h) or PLY (ply.h), as the ending of `name` says. Polygons are split into triangles (polygon.h);
+/// points and lines are left out. Errors: unknown ending, and those of the formats.
 Result<MeshShape> read_mesh(std::string_view bytes, const std::string& name);
 
 }  // namespace marrow

@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "renderer/scene/files/node_list.h"
+#include "renderer/scene/files/obj_statements.h"
 #include "renderer/scene/files/text_scan.h"
 #include "renderer/scene/finite_number.h"
 
@@ -37,9 +38,8 @@ class ObjReader {
       : text_(text), options_(options), problems_(text, name), list_(options, problems_) {}
 
   Result<SkeletonFile> read() {
-    Lines lines(text_);
-    std::string_view keyword;
-    for (std::string_view line; !problems_.is_full() && lines.next(line);) read_line(line, keyword);
+    ObjLines lines(text_);
+    for (ObjLine line{}; !problems_.is_full() && lines.next(line);) read_line(line);
     if (elements_.empty() && !problems_.is_full())
       problems_.complain_of_file("the file has no lines and no points",
                                  "a line is: l 1 2 3; triangles are for `mesh:`");
@@ -51,16 +51,9 @@ class ObjReader {
   }
 
  private:
-  // `keyword` is that of a statement which goes on from the line before, else empty.
-  void read_line(std::string_view line, std::string_view& keyword) {
-    line = line.substr(0, line.find('#'));
-    const bool goes_on = line.ends_with('\\');
-    if (goes_on) line.remove_suffix(1);
-    const bool is_new = keyword.empty();
-    if (is_new) keyword = next_word(line);
-    if (keyword == "v" && is_new) read_vertex(line, keyword.data());
-    if (keyword == "l" || keyword == "p") read_element(line, keyword, is_new, !goes_on);
-    if (!goes_on) keyword = {};
+  void read_line(const ObjLine& line) {
+    if (line.keyword == "v" && line.is_first) read_vertex(line.words, line.keyword.data());
+    if (line.keyword == "l" || line.keyword == "p") read_element(line.words, line.keyword, line.is_first, line.is_last);
   }
 
   // x y z, and then nothing, a radius, or a colour. A vertex with mistakes is counted, so that others keep their
@@ -92,7 +85,7 @@ class ObjReader {
     const bool is_line = keyword == "l";
     if (is_first) elements_.push_back({indices_.size(), start, is_line});
     for (std::string_view word = next_word(line); !word.empty(); word = next_word(line))
-      indices_.push_back(read_index(word));
+      indices_.push_back(obj_index(word, vertices_.size(), NodeList::max_nodes, problems_).value_or(broken_index));
     if (indices_.size() > NodeList::max_nodes)
       return problems_.give_up(start, fmt::format("the lines have more than {} nodes", NodeList::max_nodes));
     Element& element = elements_.back();
@@ -100,21 +93,6 @@ class ObjReader {
     element.end = indices_.size();
     if (is_last && element.end - begin < (is_line ? 2u : 1u))
       problems_.complain(start, is_line ? "a line needs two vertices" : "a point needs a vertex");
-  }
-
-  std::int32_t read_index(std::string_view word) {
-    const auto number = finite_number(word.substr(0, word.find('/')));
-    const auto index = number ? whole_number(*number) : std::nullopt;
-    const auto count = static_cast<long long>(vertices_.size());
-    if (index && *index > 0 && *index <= static_cast<long long>(NodeList::max_nodes))
-      return static_cast<std::int32_t>(*index - 1);
-    if (index && *index < 0 && *index >= -count) return static_cast<std::int32_t>(count + *index);
-    if (index && *index < 0)
-      problems_.complain(word, fmt::format("there is no vertex {}: {} came before", *index, count));
-    else
-      problems_.complain(word, quoted_word(word) + " is not the number of a vertex",
-                         "vertices are counted from 1, or from -1 backwards");
-    return broken_index;
   }
 
   void make_nodes() {
