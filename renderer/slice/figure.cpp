@@ -125,9 +125,36 @@ struct Layout {
   int width, height;
 };
 
-Layout arrange(const RgbImage& picture) {
+// Of one letter in a number, in sizes of the font.
+constexpr double letter_width = 0.62;
+
+double step_of(const std::vector<double>& values) { return values.size() > 1 ? values[1] - values[0] : 1; }
+
+// Letters of the longest number; of UTF-8 those bytes count that do not go on.
+double longest(const std::vector<double>& values) {
+  std::ptrdiff_t most = 0;
+  for (const double value : values) {
+    const std::string text = label(value, step_of(values));
+    most = std::max(most, std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+  }
+  return static_cast<double>(most);
+}
+
+// As many as find room, their numbers side by side or one below the other, at least two.
+std::vector<double> axis_ticks(double low, double high, double length_in_fonts, bool is_side_by_side) {
+  constexpr int most_ticks = 8;
+  for (int most = most_ticks;; --most) {
+    std::vector<double> found = ticks(low, high, most);
+    const double each = is_side_by_side ? std::max(4.0, letter_width * longest(found) + 1) : 1.5;
+    if (most == 2 || static_cast<double>(found.size()) * each <= length_in_fonts) return found;
+  }
+}
+
+Layout arrange(const RgbImage& picture, const SliceWindow& window) {
   const double font = std::round(24 * figure_scale(picture.width));
-  const double left = std::round(4.6 * font), top = std::round(2.2 * font), below = std::round(3.8 * font);
+  const double letters = longest(axis_ticks(window.v0, window.v1, picture.height / font, false));
+  const double left = std::round(std::max(4.6, letter_width * letters + 2.2) * font), top = std::round(2.2 * font),
+               below = std::round(3.8 * font);
   // The colour bar needs room for its letters even beside a low picture
   const double tall = std::max<double>(picture.height, std::round(9 * font));
   const double down = std::round((tall - picture.height) / 2);
@@ -138,8 +165,6 @@ Layout arrange(const RgbImage& picture) {
           bar,  static_cast<int>(bar.right() + 6.2 * font), static_cast<int>(top + tall + below)};
 }
 
-double step_of(const std::vector<double>& values) { return values.size() > 1 ? values[1] - values[0] : 1; }
-
 void draw_axes(Page& page, const Layout& at, const FigureLabels& labels) {
   const Rectangle& box = at.picture;
   const double tick = 0.35 * at.font;
@@ -147,17 +172,14 @@ void draw_axes(Page& page, const Layout& at, const FigureLabels& labels) {
   page.outline({box.x - at.line / 2, box.y - at.line / 2, box.width + at.line, box.height + at.line}, at.line);
 
   const SliceWindow& w = labels.window;
-  const auto room = [&](double length, double letters) {
-    return std::max(2, static_cast<int>(length / (letters * at.font)));
-  };
-  const std::vector<double> us = ticks(w.u0, w.u1, std::min(8, room(box.width, 4)));
+  const std::vector<double> us = axis_ticks(w.u0, w.u1, box.width / at.font, true);
   for (const double u : us) {
     const double x = box.x + (u - w.u0) / w.width() * box.width;
     const std::string text = label(u, step_of(us));
     page.line(x, box.bottom(), x, box.bottom() + tick, at.line);
     page.text(x - page.size(text).width / 2, box.bottom() + 1.4 * at.font, text);
   }
-  const std::vector<double> vs = ticks(w.v0, w.v1, std::min(8, room(box.height, 1.5)));
+  const std::vector<double> vs = axis_ticks(w.v0, w.v1, box.height / at.font, false);
   for (const double v : vs) {
     const double y = box.bottom() - (v - w.v0) / w.height() * box.height;
     const std::string text = label(v, step_of(vs));
@@ -234,7 +256,7 @@ void draw_scale_bar(Page& page, const Layout& at, const FigureLabels& labels) {
 double figure_scale(int width) { return std::max(0.5, width / 1024.0); }
 
 RgbImage draw_figure(const RgbImage& picture, const Colormap& map, const FigureLabels& labels) {
-  const Layout at = arrange(picture);
+  const Layout at = arrange(picture, labels.window);
   Page page(at.width, at.height, at.font);
   page.paste(picture, static_cast<int>(at.picture.x), static_cast<int>(at.picture.y));
   draw_axes(page, at, labels);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/output/colormap.h"
+#include "renderer/slice/figure.h"
 
 namespace marrow {
 namespace {
@@ -117,14 +118,39 @@ TEST(Slice, SurfaceLineFollowsTheSurface) {
   EXPECT_GT(white, 300) << "of the 628 pixels of the circle's length";
 }
 
+// Towards the pole the field rises so fast that |f - 1| / |grad f| hardly grows.
+TEST(Slice, SurfaceLineIsAsWideInsideAsOutside) {
+  const SliceImage image = slice_ball(300, {.window = SliceWindow{-15, -15, 15, 15}, .range = {}});
+  const auto painted = paint(image, {.range = {}, .units = {}, .contours = false, .legend = false});
+  const Colormap map = *Colormap::named("viridis");
+  const double widest = 5.5 * figure_scale(300) / 2 + 0.5;
+  for (int y = 0; y < 300; ++y)
+    for (int x = 0; x < 300; ++x) {
+      const double from_surface = std::fabs(std::hypot(x - 149.5, y - 149.5) - 10);
+      const bool is_plain = painted->pixel(x, y)[0] == map(image.at(x, y).value / 2)[0];
+      if (std::fabs(from_surface - widest) > 0.2) { ASSERT_EQ(is_plain, from_surface > widest) << x << ' ' << y; }
+    }
+}
+
+TEST(Slice, NoLineWhereBoundedFieldsEnd) {
+  const auto bounded = [](const Vec3d& p) { return SliceSample{std::fmax(0, 2 - 2 * length(p)), {}}; };
+  const SliceImage image =
+      *slice({bounded}, 1, unit_box, {.window = SliceWindow{-2, -2, 2, 2}, .width = 200, .range = {}});
+  const auto painted = paint(image, {.range = {}, .units = {}, .contours = true, .legend = false});
+  const Colormap map = *Colormap::named("viridis");
+  for (int y = 0; y < 200; ++y)
+    for (int x = 0; x < 200; ++x)
+      if (image.at(x, y).value < 0.15) { ASSERT_EQ(painted->pixel(x, y)[0], map(image.at(x, y).value / 2)[0]); }
+}
+
 TEST(Slice, NotANumberIsMagentaAndInfinityTheEndColour) {
-  SliceImage image = slice_ball(3);
+  SliceImage image = slice_ball(33);
   image.samples[0].value = std::nan("");
-  image.samples[4].value = std::numeric_limits<double>::infinity();
+  image.samples[16 * 33 + 16].value = std::numeric_limits<double>::infinity();
   const auto painted = paint(image, {.range = {}, .units = {}, .contours = false, .legend = false});
   EXPECT_EQ(painted->pixel(0, 0)[1], 0.f);
   EXPECT_EQ(painted->pixel(0, 0)[2], 1.f);
-  EXPECT_EQ(painted->pixel(1, 1)[0], (*Colormap::named("viridis"))(1)[0]);
+  EXPECT_EQ(painted->pixel(16, 16)[0], (*Colormap::named("viridis"))(1)[0]);
 }
 
 TEST(Slice, AutomaticRangeHasTheSurfaceInItsMiddle) {
