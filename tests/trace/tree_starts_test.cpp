@@ -87,5 +87,45 @@ TEST(TreeStarts, LieOutside) {
   EXPECT_GT(hits, 100);
 }
 
+FieldNodeId tube_of(FieldDescription& field, const SegmentSkeleton& skeleton) {
+  Primitive one;
+  one.skeleton = skeleton;
+  Blend blend;
+  blend.of.push_back(field.add({.what = one, .where = {}}));
+  return field.add({.what = std::move(blend), .where = {}});
+}
+
+// Both fields are infinite there: deep inside, whatever is infinite less infinite.
+TEST(TreeStarts, AtANodeOfTwoBodiesInContactAreInside) {
+  FieldDescription field;
+  const FieldNodeId one = tube_of(field, {{0, 0, 0}, {-1, 0, 0}, 0.3, 0.3});
+  const FieldNodeId other = tube_of(field, {{-1, 0, 0}, {-1, 1, 0}, 0.3, 0.3});
+  field.root = add(field, Contact{}, {one, other});
+  const TreeTracer tracer = tracer_of(field);
+  Random random(50);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3d toward = i == 0 ? Vec3d{-1, 0, 0} : i == 1 ? Vec3d{0, 0, 1} : random.vector(1);
+    const Ray ray{.origin = {-1, 0, 0}, .direction = normalize(toward)};
+    const CrossingSearch found = traced(tracer, ray);
+    ASSERT_TRUE(found.t) << "ray " << i;
+    EXPECT_GT(*found.t, 0.1);
+    EXPECT_NEAR(value(tracer.tree(), ray.at(*found.t)), 1, 1e-6) << "ray " << i;
+    for (double t = 1e-9; t < *found.t; t *= 1.1) ASSERT_GE(value(tracer.tree(), ray.at(t)), 1) << "ray " << i;
+  }
+}
+
+// Along the axis of a tube in the plane of a plate: infinite all along, yet certainly inside.
+TEST(TreeStarts, AlongTwoSkeletonsInContactTakeFewEvaluations) {
+  FieldDescription field;
+  const FieldNodeId one = tube_of(field, {{-1, 0, 0}, {1, 0, 0}, 0.3, 0.3});
+  const FieldNodeId other = tube_of(field, {{-1, 0, 0}, {1, 0, 0}, 0.2, 0.2});
+  field.root = add(field, Contact{}, {one, other});
+  const CrossingSearch found =
+      traced(tracer_of(field), Ray{.origin = {0.5, 0, 0}, .direction = UnitVec3::unchecked({-1, 0, 0})});
+  ASSERT_TRUE(found.t);
+  EXPECT_NEAR(*found.t, 1.5 + 0.25, 0.1);
+  EXPECT_LT(found.evaluations, 10000u);
+}
+
 }  // namespace
 }  // namespace marrow::test

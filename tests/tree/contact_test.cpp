@@ -1,6 +1,8 @@
 // Precise contact: reference values of the bulges, their conditions, what contact guarantees.
 #include "field/tree/nodes/contact.h"
 
+#include <limits>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/field/reference_values.h"
@@ -106,6 +108,25 @@ TEST(Contact, BelongsToTheBodyWhoseDeformedFieldIsLargest) {
 TEST(Contact, UsualBulgesMeetBetweenTheBodies) {
   for (const Bulge& b : {Bulge(PlainBulge{}), Bulge(HeightBulge{})})
     for (double t = 0; t < 1; t += 1e-3) EXPECT_LT(contact_term(b, test::Slope::variable(t, 0)).slope[0], 1);
+}
+
+// At a node of two bodies, and close to it, where one more is lost beside fields of 1e30.
+TEST(Contact, IsInsideWhereFieldsAreInfinite) {
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const bool first_only : {false, true}) {
+    const Contact contact{PlainBulge{}, first_only};
+    EXPECT_EQ(field_of(contact, {inf, inf}), inf);
+    EXPECT_EQ(field_of(contact, {inf, inf, inf}), inf);
+    EXPECT_EQ(field_of(contact, {inf, 5}), inf);
+    EXPECT_EQ(field_of(contact, {1e30, 1e30}), 1);
+    EXPECT_GT(field_of(contact, {1e30, 0.9e30}), 1e28);
+  }
+  EXPECT_EQ(field_of(Contact{}, {5, inf}), inf);
+  EXPECT_EQ(field_of(Contact{PlainBulge{}, true}, {5, inf}), 0);
+  const Interval whole[] = {{1, inf}, {2, inf}};
+  const Interval value = Contact{}.value(std::span<const Interval>(whole));
+  EXPECT_LE(value.lo, 1);
+  EXPECT_EQ(value.hi, inf);
 }
 
 TEST(Contact, FarBodiesStayAsTheyAre) {

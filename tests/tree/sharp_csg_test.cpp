@@ -1,6 +1,8 @@
 // Sharp set operations: the crisp surface, a field without other creases.
 #include "field/tree/nodes/sharp_csg.h"
 
+#include <limits>
+
 #include "tests/tree/node_laws.h"
 
 namespace marrow {
@@ -83,6 +85,20 @@ TEST(SharpCsg, SlopesOnTheSurfaceAreThoseOfOneSide) {
     EXPECT_NEAR(c.slope[0].hi, 0, 1e-12);
     EXPECT_NEAR(c.slope[1].lo, 1, 1e-12);
     EXPECT_NEAR(c.slope[1].hi, 1, 1e-12);
+  }
+}
+
+TEST(SharpCsg, HoldsForInfiniteAndLargeFields) {
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const double smooth : {0.0, 0.5, 1.0}) {
+    EXPECT_EQ(field_of(SharpUnion{smooth}, {inf, 0.2}), inf);
+    EXPECT_EQ(field_of(SharpUnion{smooth}, {3, inf}), inf);
+    EXPECT_EQ(field_of(SharpUnion{smooth}, {inf, inf}), inf);
+    EXPECT_GE(field_of(SharpUnion{smooth}, {1e200, 0.9e200}), 1e200);
+    EXPECT_EQ(field_of(SharpIntersection{smooth}, {inf, 0.2}), 0.2);
+    EXPECT_EQ(field_of(SharpIntersection{smooth}, {inf, inf}), inf);
+    EXPECT_EQ(field_of(SharpDifference{smooth}, {inf, 0}), 2);
+    EXPECT_EQ(field_of(SharpDifference{smooth}, {inf, inf}), 0);
   }
 }
 

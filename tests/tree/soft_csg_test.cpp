@@ -1,6 +1,8 @@
 // Soft set operations: crisp outside the two control rays, smooth between, control by each side.
 #include "field/tree/nodes/soft_csg.h"
 
+#include <limits>
+
 #include "tests/tree/node_laws.h"
 
 namespace marrow {
@@ -88,6 +90,26 @@ TEST(SoftCsg, NothingAddsNothing) {
   EXPECT_EQ(field_of(SoftDifference{}, {0.7, 0}), 0.7);
   EXPECT_EQ(field_of(SoftDifference{}, {0, 0.7}), 0);
   EXPECT_EQ(field_of(SoftDifference{}, {5, 2}), 0);
+}
+
+// On skeletons, and beside them, where squares overflow.
+TEST(SoftCsg, HoldsForInfiniteAndLargeFields) {
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const double control : {0.0, 0.5, 0.9}) {
+    EXPECT_EQ(field_of(SoftUnion{control, control}, {inf, 0}), inf);
+    EXPECT_EQ(field_of(SoftUnion{control, control}, {0.5, inf}), inf);
+    EXPECT_EQ(field_of(SoftUnion{control, control}, {inf, inf}), inf);
+    const double ratio = field_of(SoftUnion{control, control}, {3, 2.9});
+    for (const double large : {1e90, 1e150, 1e200, 1e300})
+      EXPECT_NEAR(field_of(SoftUnion{control, control}, {3 * large, 2.9 * large}) / large, ratio, 1e-13);
+    const Interval boxes[] = {{2, inf}, {3, inf}};
+    const Interval value = SoftUnion{control, control}.value(std::span<const Interval>(boxes));
+    EXPECT_TRUE(value.lo >= 3 * (1 - 1e-12) && value.hi == inf) << control;
+  }
+  EXPECT_EQ(field_of(SoftIntersection{}, {inf, inf}), inf);
+  EXPECT_EQ(field_of(SoftIntersection{}, {inf, 0.5}), 0.5);
+  EXPECT_EQ(field_of(SoftDifference{}, {inf, 0}), 2);
+  EXPECT_EQ(field_of(SoftDifference{}, {inf, inf}), 0);
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ class Search {
   // Settles the piece, or puts back what remains of it.
   void examine(Piece piece) {
     const OnRay f = enclosure({piece.begin, piece.end});
-    if (!f.value.contains(1)) return;
+    if (f.value.hi < 1 || f.value.lo >= 1) return;  // 1 is inside
     const Interval slope = f.slope[0];
     if (any_) {
       learn_sides(piece);

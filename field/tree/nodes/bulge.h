@@ -104,18 +104,31 @@ struct RippleBulge {
 
 using Bulge = std::variant<PlainBulge, HeightBulge, RippleBulge>;
 
+/// The bulge, at a field t below 1 of another body.
+template <Number X>
+X bulge_term(const Bulge& bulge, const X& t) {
+  return std::visit(
+      [&](const auto& b) {
+        return piecewise(
+            t, b.from, [](const X&) { return X(0.0); }, [&](const X& x) { return b.value(x); });
+      },
+      bulge);
+}
+
 /// What a body's field gains at the field t of another body: the bulge around it, and 1 - t inside.
 template <Number X>
 X contact_term(const Bulge& bulge, const X& t) {
-  const auto outside = [&](const X& x) {
-    return std::visit(
-        [&](const auto& b) {
-          return piecewise(
-              x, b.from, [](const X&) { return X(0.0); }, [&](const X& y) { return b.value(y); });
-        },
-        bulge);
-  };
-  return piecewise(t, 1, outside, [](const X& x) { return X(1.0) - x; });
+  return piecewise(
+      t, 1, [&](const X& x) { return bulge_term(bulge, x); }, [](const X& x) { return X(1.0) - x; });
+}
+
+/// A body's own field with what it gains at another's. The difference comes first, as fields of 1e30 near skeletons
+/// would lose the 1. Where both are infinite, at a node of both, this is too: another's counts up to 1e300.
+template <Number X>
+X deformed(const Bulge& bulge, const X& own, const X& other) {
+  return piecewise(
+      other, 1, [&](const X& x) { return own + bulge_term(bulge, x); },
+      [&](const X& x) { return (own - min(x, X(1e300))) + X(1.0); });
 }
 
 }  // namespace marrow

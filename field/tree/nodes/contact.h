@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -44,10 +45,10 @@ struct Contact {
     std::size_t best = 0;
     double best_field = -1;
     for (std::size_t i = 0; i < f.size(); ++i) {
-      const double deformed = f[i] + contact_term(bulge, f[i == most ? second : most]);
-      if (deformed <= best_field) continue;
+      const double field = deformed(bulge, f[i], f[i == most ? second : most]);
+      if (field <= best_field) continue;
       best = i;
-      best_field = deformed;
+      best_field = field;
     }
     return best;
   }
@@ -59,7 +60,10 @@ struct Contact {
       second = max(second, min(most, x));
       most = max(most, x);
     }
-    return max(most + contact_term(bulge, second), second + contact_term(bulge, most));
+    // Inside two bodies it is never below 1, which two bounds apart from each other would not tell.
+    return piecewise(
+        second, 1, [&](const X& s) { return max(deformed(bulge, most, s), deformed(bulge, s, most)); },
+        [&](const X& s) { return known_within(deformed(bulge, most, s), 1, std::numeric_limits<double>::infinity()); });
   }
 
   /// Of each body, whether the value depends on it all over these intervals: all others may go at once.
@@ -109,7 +113,7 @@ struct Contact {
   X first(std::span<const X> f) const {
     X most = f[1];
     for (const X& x : f.subspan(2)) most = max(most, x);
-    return max(f[0] + contact_term(bulge, most), X(0.0));
+    return max(deformed(bulge, f[0], most), X(0.0));
   }
 };
 

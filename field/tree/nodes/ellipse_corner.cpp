@@ -12,9 +12,9 @@ EllipseCorner::Partials EllipseCorner::partials_at(double x, double y) const {
     case Part::Arc:
       break;
   }
-  const Interval A = a, B = b, c = arc(Interval(x), Interval(y));
-  const Interval u = (Interval(x) - A * c) / square(Interval(1) - A),
-                 v = (Interval(y) - B * c) / square(Interval(1) - B);
+  const double s = scale(x, y);  // only directions matter
+  const Interval A = a, B = b, X = x * s, Y = y * s, c = arc(X, Y);
+  const Interval u = (X - A * c) / square(Interval(1) - A), v = (Y - B * c) / square(Interval(1) - B);
   const Interval all = c + A * u + B * v;
   return {clamped(u / all, {0, 1}), clamped(v / all, {0, 1})};
 }

@@ -1,6 +1,9 @@
 // Two fields joined by an arc of an ellipse: the rounded corner behind the soft set operations.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "field/number/functions.h"
 
 namespace marrow {
@@ -26,7 +29,9 @@ struct EllipseCorner {
  private:
   enum class Part { Vertical, Horizontal, Arc };
 
+  // A union is infinite where one of both is.
   Part part(double x, double y) const {
+    if (a < 1 && std::isinf(std::max(x, y))) return x >= y ? Part::Vertical : Part::Horizontal;
     if (a < 1 ? y <= b * x : y >= b * x) return Part::Vertical;
     if (a < 1 ? x <= a * y : x >= a * y) return Part::Horizontal;
     return Part::Arc;
@@ -47,8 +52,12 @@ struct EllipseCorner {
   template <Number X>
   X at_point(const X& x, const X& y) const {
     const Part p = part(lower(x), lower(y));
-    return p == Part::Vertical ? x : p == Part::Horizontal ? y : arc(x, y);
+    if (p != Part::Arc) return p == Part::Vertical ? x : y;
+    const double s = scale(lower(x), lower(y));
+    return s == 1 ? arc(x, y) : arc(x * X(s), y * X(s)) * X(1 / s);
   }
+  // By which both are multiplied so that their squares are finite.
+  static double scale(double x, double y) { return std::max(x, y) > 1e100 ? 0x1p-700 : 1; }
   Partials partials_at(double x, double y) const;
 };
 
