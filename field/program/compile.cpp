@@ -195,6 +195,7 @@ class Compiler {
     if (const auto* rule = std::get_if<AlphaFromField>(&blend.alpha))
       part.blend.alpha_source = source_of(*rule, {rule->field, to_blend});
     strand_ = 0;
+    has_attribute_ = false;
     std::vector<Placement> open;
     push_children(blend.of, to_blend, open);
     while (!open.empty() && placements_ <= max_placements_) {
@@ -203,6 +204,9 @@ class Compiler {
       ++placements_;
       add_child(child, blend, model.value_or(blend.model), part.blend, open);
     }
+    if (const auto* rule = std::get_if<AlphaAttribute>(&blend.alpha); rule && !has_attribute_)
+      warn(here.node, "no skeleton of this blend has the attribute `" + rule->name + "`",
+           "each has the angle of `contact` then");
     return part;
   }
 
@@ -281,6 +285,10 @@ class Compiler {
       const auto [least, most] = primitive.alpha_bounds.value_or(std::array{rule->least, rule->most});
       field.direction_bounds.push_back({least, most});
     }
+    if (const auto* rule = std::get_if<AlphaAttribute>(&blend.alpha))
+      has_attribute_ = has_attribute_ || has_attribute(primitive, rule->name);
+    else if (primitive.alpha && !std::holds_alternative<AlphaPerSkeleton>(blend.alpha))
+      warn(child.node, "the `alpha` of this skeleton has no effect", "give its blend `alpha: per_skeleton`");
     Flattener flatten(field, child.from_node, scale, model, primitive, blend.alpha, strand_++);
     std::visit(flatten, primitive.skeleton);
     if (flatten.model() == SkeletonModel::CaniHornus) {
@@ -312,8 +320,9 @@ class Compiler {
   Diagnostics errors_, warnings_;
   ContactAngles contact_;
   std::size_t placements_ = 0, max_placements_;
-  std::uint32_t strand_ = 0;  // of the blend in hand
-  bool is_source_ = false;    // a field of angles, within another compilation
+  std::uint32_t strand_ = 0;    // of the blend in hand
+  bool has_attribute_ = false;  // a skeleton of it, that of its alpha
+  bool is_source_ = false;      // a field of angles, within another compilation
 };
 
 }  // namespace

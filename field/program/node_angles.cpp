@@ -47,6 +47,8 @@ double as_angle(const AlphaAttribute& rule, double value) {
 
 }  // namespace
 
+bool has_attribute(const Primitive& primitive, const std::string& name) { return !values_of(primitive, name).empty(); }
+
 NodeAngles::NodeAngles(const Primitive& primitive, const Alpha& rule, double otherwise) {
   if (std::holds_alternative<AlphaPerSkeleton>(rule)) angles_ = {primitive.alpha.value_or(otherwise)};
   if (const auto* attribute = std::get_if<AlphaAttribute>(&rule)) {

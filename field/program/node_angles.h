@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "field/description/field_node.h"
@@ -20,6 +21,9 @@ class NodeAngles {
  private:
   std::vector<double> angles_;
 };
+
+/// Whether it has an attribute of this name, as all have `radius`.
+bool has_attribute(const Primitive&, const std::string& name);
 
 /// How many values an attribute of this skeleton may have besides one for all.
 std::size_t node_count(const Primitive&);

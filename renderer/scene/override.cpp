@@ -55,6 +55,9 @@ void apply(Value& scene, std::string_view text, Place at, Reader& reader, std::s
   if (!value) return;
   Value* target = &scene;
   std::string_view path = text.substr(0, equals);
+  if (path.substr(0, path.find('.')) == "include")
+    return reader.error(at, "`include` cannot be set here: files are included before",
+                        "write a scene that includes the other file", equals);
   while (target) {
     const std::size_t dot = std::min(path.find('.'), path.size());
     target = step_into(*target, std::string(path.substr(0, dot)), at, reader);

@@ -81,10 +81,15 @@ Form<std::string> element_symbol() {
 
 // Keys that a format knows nothing about are mistakes.
 bool keys_fit(const File& file, const Value& v, Reader& reader) {
-  const auto format = file.any_format();
-  if (!format) return true;  // said when the file is opened
-  const bool is_molecule = *format == SkeletonFormat::Xyz || *format == SkeletonFormat::Pdb;
   bool fit = true;
+  if (const Member* scale = v.find("radius_scale"); scale && file.options.radius) {
+    reader.error(scale->place, "`radius_scale` has no effect beside `radius`", "leave out one of them",
+                 scale->key.size());
+    fit = false;
+  }
+  const auto format = file.any_format();
+  if (!format) return fit;  // said when the file is opened
+  const bool is_molecule = *format == SkeletonFormat::Xyz || *format == SkeletonFormat::Pdb;
   const auto refuse = [&](const char* name, const char* which) {
     const Member* member = v.find(name);
     if (!member) return;

@@ -208,6 +208,29 @@ TEST(Compile, SegmentsWithoutLengthAddNothingAndAreToldOf) {
   EXPECT_EQ(program.warnings()[0].where.line, 1);
 }
 
+// Names are words of the author: a mistyped one is no mistake, and has no effect.
+TEST(Compile, TellsOfAnglesThatHaveNoEffect) {
+  const auto warnings = [](const Alpha& alpha, std::optional<double> of_skeleton, std::vector<Attribute> attributes) {
+    Builder builder;
+    Primitive tube = primitive(SegmentSkeleton{{0, 0, 0}, {1, 0, 0}, 0.5, 0.5});
+    tube.alpha = of_skeleton;
+    tube.attributes = std::move(attributes);
+    Blend blend;
+    blend.alpha = alpha;
+    blend.of = {builder.add(tube), builder.point({0, 2, 0}, 1)};
+    builder.add(blend);
+    return compiled(builder.description()).warnings();
+  };
+  const Attribute age{.name = "age", .values = {1}};
+  ASSERT_EQ(warnings(AlphaAttribute{.name = "agee", .ramp = {}}, {}, {age}).size(), 1u);
+  EXPECT_NE(warnings(AlphaAttribute{.name = "agee", .ramp = {}}, {}, {age})[0].message.find("`agee`"),
+            std::string::npos);
+  EXPECT_TRUE(warnings(AlphaAttribute{.name = "age", .ramp = {}}, {}, {age}).empty());
+  EXPECT_TRUE(warnings(AlphaAttribute{.name = "radius", .ramp = {}}, {}, {}).empty());
+  EXPECT_EQ(warnings(AlphaContact{}, 0.5, {}).size(), 1u);
+  EXPECT_TRUE(warnings(AlphaPerSkeleton{}, 0.5, {}).empty());
+}
+
 TEST(Compile, ReportsEveryErrorAtItsPlace) {
   Builder builder;
   builder.point({0, 0, 0}, 0);                                              // line 1

@@ -114,6 +114,9 @@ TEST(Csv, SaysWhatIsWrongAndWhere) {
   expect_file_error(csv, "radius,x,y,z\n1,1,2e15,3\n", 2, 5, "`2e15` lies beyond");
   expect_file_error(csv, "1,2,3\n", 1, 1, "no column 9", {.radius = 1.0, .columns = {.x = 9, .y = 2, .z = 3}});
   expect_file_error(csv, "a,y,z\n", 1, 1, "no column `b`", {.radius = 1.0, .columns = {.x = "b"}});
+  expect_file_error(csv, "x,y,z\n1,5,0,0\n", 2, 7, "the row has 4 fields, the first has 3", thick);
+  EXPECT_TRUE(read_skeleton(csv, "x,y,z\n1,5,0,,\n", thick, "t"));
+  expect_file_error(csv, "x,y,z,strand\n1,5,0,a\n1,6,0,\n", 3, 7, "names no strand", thick);
   std::string many = "x,y,z\n";
   for (int i = 0; i < 1000; ++i) many += "?\n";
   EXPECT_EQ(read_skeleton(csv, many, thick, "t").why().size(), 20u);

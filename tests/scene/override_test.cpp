@@ -46,6 +46,7 @@ TEST_F(Override, MistakesHavePlaces) {
   EXPECT_THAT(says("render"), HasSubstr("an override is path=value"));
   EXPECT_THAT(says("=4"), HasSubstr("an override is path=value"));
   EXPECT_THAT(says("film.size=[1"), HasSubstr("-D:2:"));
+  EXPECT_THAT(says("include=other.yaml"), HasSubstr("-D:2:1: error: `include` cannot be set here"));
 }
 
 }  // namespace

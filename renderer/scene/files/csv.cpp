@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -111,6 +112,7 @@ class CsvReader {
       return problems_.complain_of_line(first[0].place, "the rows are joined both by strands and by parents",
                                         "choose one of the columns");
     has_header_ = !are_all_counted || !rows_.number(first[places_[X]].text);
+    fields_ = first.size();
     for (const std::size_t place : places_)
       if (place != absent) width_ = std::max(width_, place + 1);
   }
@@ -135,6 +137,13 @@ class CsvReader {
     if (row.size() < width_)
       return problems_.complain(row.back().text.data() + row.back().text.size(),
                                 fmt::format("the row has {} fields, column {} is needed", row.size(), width_));
+    if (row.size() > fields_ && !are_blank(std::span(row).subspan(fields_)))
+      return problems_.complain(row[fields_].place,
+                                fmt::format("the row has {} fields, the first has {}", row.size(), fields_),
+                                "decimal commas need another separator, such as semicolons");
+    if (has(Strand) && row[places_[Strand]].text.empty())
+      return problems_.complain(row[places_[Strand]].place, "the row names no strand",
+                                "a strand is any word; rows of one word are joined");
     const auto x = number(row, X), y = number(row, Y), z = number(row, Z);
     const auto radius = options_.radius ? options_.radius : number(row, Radius);
     std::int32_t parent = -1;
@@ -142,6 +151,10 @@ class CsvReader {
     const auto place = [&](Column column) { return row[places_[column]].place; };
     list_.add({x.value_or(0), y.value_or(0), z.value_or(0)}, radius.value_or(0), parent,
               NodePlaces{{place(X), place(Y), place(Z)}, options_.radius ? nullptr : place(Radius)});
+  }
+
+  static bool are_blank(std::span<const TableField> fields) {
+    return std::ranges::all_of(fields, [](const TableField& field) { return field.text.empty(); });
   }
 
   // The last node of a strand so far, or -1. Rows of one strand nearly always follow each other.
@@ -188,7 +201,8 @@ class CsvReader {
   NodeList list_;
   std::array<std::optional<ColumnName>, Columns> wanted_;
   std::array<std::size_t, Columns> places_{};
-  std::size_t width_ = 0;
+  std::size_t width_ = 0;   // so many fields are needed
+  std::size_t fields_ = 0;  // of the first row
   bool has_header_ = true, has_id_0_ = false;
   std::int64_t rows_so_far_ = 0;
   std::unordered_map<std::string_view, std::int32_t> last_of_strand_;
