@@ -78,7 +78,8 @@ const Table<Blend>& blend_table() {
        key<Blend>("projection", &Blend::projection,
                   choice<Projection>({{"paper", Projection::Paper}, {"exact", Projection::Exact}}),
                   "how the corrected value is found: in one step as published, or exactly"),
-       key<Blend>("model", &Blend::model, skeleton_model(), "field of the skeletons that do not say it themselves"),
+       key<Blend>("model", &Blend::model, skeleton_model(),
+                  "field of the skeletons that do not say it themselves; \"What a radius is\" above"),
        key<Blend>("of", &Blend::of, list_of(field_node(), 1), "the skeletons").required()});
   return table;
 }

@@ -17,7 +17,9 @@ const Table<ConstantLight>& constant_table() {
 
 const Table<ImageLight>& image_table() {
   static const Table<ImageLight> table(
-      "image", "A picture of all directions (latitude-longitude) that shines.",
+      "image",
+      "A picture of all directions (latitude-longitude) that shines: its first row is up, its middle "
+      "looks to -z, or to y where z is up.",
       {key<ImageLight>("file", &ImageLight::file, file_name(), "OpenEXR or another linear picture").required(),
        key<ImageLight>("rotate", &ImageLight::rotate_deg, degrees(any_number()), "about the up axis, in degrees"),
        key<ImageLight>("scale", &ImageLight::scale, radiance(), "multiplies the picture")});

@@ -60,7 +60,9 @@ const Table<RenderSettings>& render_table() {
                                        {"direct", Integrator::Direct},
                                        {"normals", Integrator::Normals},
                                        {"depth", Integrator::Depth}}),
-                   "path tracing, direct light only, or a picture of normals or depth"),
+                   "path tracing, direct light only, or a picture of normals or depth: f / (f + depth), f from `from` "
+                   "to `to` of "
+                   "the camera"),
        key<Render>("spp", &Render::samples_per_pixel, integer(1, 1 << 24), "samples for each pixel"),
        key<Render>("seed", &Render::seed, any_unsigned(), "another seed gives other noise"),
        key<Render>("max_depth", &Render::max_depth, integer(1, 10000),

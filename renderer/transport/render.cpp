@@ -43,8 +43,9 @@ class DefaultFloatEnvironment {
 // Counts finished samples and tells the listener, not too often.
 class Meter {
  public:
-  Meter(std::function<void(const Progress&)> listener, std::uint64_t total) : listener_(std::move(listener)) {
+  Meter(const RenderOptions& options, std::uint64_t total) : listener_(options.progress) {
     progress_.total = total;
+    if (options.time_limit_s) progress_.limit_s = *options.time_limit_s;
   }
   void add(std::uint64_t samples) {
     done_ += samples;
@@ -67,6 +68,7 @@ class Meter {
     progress_.elapsed_s = elapsed();
     const double left = static_cast<double>(progress_.total - progress_.done);
     progress_.left_s = progress_.done == 0 ? 0 : progress_.elapsed_s * left / static_cast<double>(progress_.done);
+    progress_.left_s = std::clamp(progress_.limit_s - progress_.elapsed_s, 0.0, progress_.left_s);
     listener_(progress_);
   }
 
@@ -184,7 +186,7 @@ Film empty_film(int width, int height, const std::optional<PixelWindow>& crop) {
 Film render(const RenderScene& scene, const RenderSettings& settings, const RenderOptions& options, Film film) {
   const DefaultFloatEnvironment defaults;
   const Job job{scene, settings, options};
-  Meter meter(options.progress, film.pixels().size() * static_cast<std::uint64_t>(job.samples));
+  Meter meter(options, film.pixels().size() * static_cast<std::uint64_t>(job.samples));
 
   const int threads = options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
   const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "renderer/output/picture.h"
@@ -17,8 +18,9 @@ namespace marrow {
 struct Progress {
   std::uint64_t done = 0, total = 0;
   double elapsed_s = 0;
-  double left_s = 0;          ///< estimate from the units done so far; 0 before the first
-  int samples_per_pixel = 0;  ///< every pixel has at least this many
+  double left_s = 0;  ///< estimate from the units done so far, at most up to the limit; 0 before the first
+  double limit_s = std::numeric_limits<double>::infinity();  ///< no pass begins after so much time
+  int samples_per_pixel = 0;                                 ///< every pixel has at least this many
 };
 
 struct RenderOptions {

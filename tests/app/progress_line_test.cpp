@@ -26,6 +26,13 @@ TEST(Bar, FitsEveryTerminal) {
     }
 }
 
+TEST(Bar, TellsOfTheTimeWhereThatEndsFirst) {
+  const Progress p{.done = 10, .total = 1000, .elapsed_s = 5, .left_s = 5, .limit_s = 10};
+  EXPECT_NE(bar_text(p, 100).find(" 50 %"), std::string::npos);
+  EXPECT_NE(bar_text({.done = 900, .total = 1000, .elapsed_s = 5, .limit_s = 10}, 100).find(" 90 %"),
+            std::string::npos);
+}
+
 TEST(Bar, GrowsAndIsFullOnlyAtTheEnd) {
   std::ptrdiff_t before = 0;
   for (std::uint64_t done = 0; done <= 1000; ++done) {

@@ -183,7 +183,10 @@ TEST(Render, ProgressCountsEverySample) {
 }
 
 TEST(Render, TimeLimitStopsWithAnEvenPicture) {
-  const Film film = render(studio(20, 10), {.samples_per_pixel = 1 << 30}, {.time_limit_s = 0.05});
+  Progress last;
+  const Film film = render(studio(20, 10), {.samples_per_pixel = 1 << 30},
+                           {.time_limit_s = 0.05, .progress = [&](const Progress& p) { last = p; }});
+  EXPECT_LE(last.left_s, 0.05);
   EXPECT_EQ(film.stopped_by, StopReason::Time);
   const std::uint32_t samples = film.pixels()[0].samples();
   EXPECT_GE(samples, 1u);

@@ -15,8 +15,10 @@ namespace {
 
 constexpr const char* wipe = "\r\033[K";
 
+// Of the samples, or of the time when that ends first.
 double share(const Progress& p) {
-  return p.total == 0 ? 0 : static_cast<double>(p.done) / static_cast<double>(p.total);
+  const double done = p.total == 0 ? 0 : static_cast<double>(p.done) / static_cast<double>(p.total);
+  return std::max(done, std::min(p.elapsed_s / p.limit_s, 1.0));
 }
 
 int terminal_columns() {
