@@ -1,4 +1,5 @@
 // The program: a command line becomes a command, and the command is done.
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -27,6 +28,7 @@ ExitCode after_flushing(ExitCode code) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file larger than allowed is then a failed write, as on a full disk
   try {
     return static_cast<int>(after_flushing(obey(argc, argv)));
   } catch (const std::bad_alloc&) {

@@ -1,6 +1,7 @@
 """From a scene file to picture files: the same bytes each time, and nothing lost when something is wrong."""
 import os
 import pathlib
+import resource
 import signal
 import subprocess
 import time
@@ -126,6 +127,16 @@ class RenderTest(ProgramTest):
         with open("/dev/full", "w", encoding="utf-8") as full:
             done = subprocess.run([PROGRAM, "schema"], stdout=full, stderr=subprocess.PIPE, check=False)
         self.assertEqual(done.returncode, 74)
+
+    def test_a_limit_of_file_sizes_is_an_error_and_leaves_nothing(self):
+        scene = self.write("point.yaml", POINT)
+
+        def allow_a_kilobyte():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1024, 1024))
+        done = subprocess.run([PROGRAM, "render", scene, "-D", "film.size=[64, 64]", "-o", "large.exr"],
+                              cwd=self.folder, preexec_fn=allow_a_kilobyte, capture_output=True, check=False)
+        self.assertEqual(done.returncode, 74)
+        self.assertEqual(self.files(), [scene])
 
     def test_a_signal_keeps_what_there_is(self):
         scene = self.write("point.yaml", POINT)

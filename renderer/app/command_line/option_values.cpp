@@ -38,4 +38,12 @@ Result<SliceWindow> parse_window(const std::string& text) {
   return failure("a window is u0,v0,u1,v1 in scene units with u0 < u1 and v0 < v1; found '" + text + "'");
 }
 
+Result<ProgressStyle> parse_progress_style(const std::string& text) {
+  if (text == "auto") return ProgressStyle::Auto;
+  if (text == "bar") return ProgressStyle::Bar;
+  if (text == "plain") return ProgressStyle::Plain;
+  if (text == "json") return ProgressStyle::Json;
+  return failure("a style is auto, bar, plain or json; found '" + text + "'");
+}
+
 }  // namespace marrow

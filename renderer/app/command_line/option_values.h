@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "field/base/result.h"
+#include "renderer/app/command_line/commands.h"
 #include "renderer/slice/slice.h"
 
 namespace marrow {
@@ -21,5 +22,8 @@ Result<std::pair<double, double>> parse_range(const std::string&);
 
 /// "u0,v0,u1,v1", all finite, u0 < u1, v0 < v1.
 Result<SliceWindow> parse_window(const std::string&);
+
+/// "auto", "bar", "plain", "json".
+Result<ProgressStyle> parse_progress_style(const std::string&);
 
 }  // namespace marrow

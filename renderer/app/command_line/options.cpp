@@ -3,7 +3,6 @@
 
 #include <cstdio>
 #include <functional>
-#include <map>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -80,10 +79,6 @@ void add_isa(CLI::App& app, std::string& isa) {
 }
 
 void describe(CLI::App& app, RenderCommand& c) {
-  static const std::map<std::string, ProgressStyle> styles{{"auto", ProgressStyle::Auto},
-                                                           {"bar", ProgressStyle::Bar},
-                                                           {"plain", ProgressStyle::Plain},
-                                                           {"json", ProgressStyle::Json}};
   add_scene(app, c.scene);
   add_path(app, "-o,--output", c.output, "Picture to write, .exr or .png; default: SCENE's stem, both");
   add_path(app, "--png", c.png, "PNG to write, through the view");
@@ -102,8 +97,9 @@ void describe(CLI::App& app, RenderCommand& c) {
   app.add_option("--embree-isa", c.embree_isa)->check(CLI::IsMember({"sse4", "avx2", "avx512"}))->group("");
   app.add_option("--tile", c.tile_size)->check(from_to(1, 4096))->group("");
   app.add_flag("--eager", c.eager)->group("");
-  auto* progress = app.add_option("--progress", c.progress, "auto, bar, plain or json (lines on standard error)");
-  progress->transform(CLI::CheckedTransformer(styles).description(""))->type_name("STYLE");
+  auto* progress = add_parsed<ProgressStyle, ProgressStyle>(app, "--progress", c.progress, parse_progress_style,
+                                                            "auto, bar, plain or json (lines on standard error)");
+  progress->type_name("STYLE");
   app.add_flag_callback(
          "-q,--quiet", [&c] { c.progress = ProgressStyle::None; }, "No progress, only problems")
       ->excludes(progress);
