@@ -1,4 +1,4 @@
-// Small readers of text that the command line shares.
+// Small readers of text, and words for numbers, that commands share.
 #pragma once
 
 #include <cstddef>
