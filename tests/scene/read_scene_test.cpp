@@ -228,6 +228,16 @@ TEST_F(ReadScene, SkeletonsOfFilesAreSimplifiedAndSmoothed) {
   EXPECT_EQ(nodes(", simplify: 0.001, subdivision: cubic, levels: 1"), 5u);
 }
 
+TEST_F(ReadScene, ARadiusForAllLeavesNothingToScale) {
+  write("n.swc", "1 1 0 0 0 1 -1\n2 1 1 0 0 1 1\n");
+  const auto with = [](const std::string& options) {
+    return "marrow: 1\nobjects:\n  - field: {skeleton: {file: n.swc, " + options + "}}\n";
+  };
+  EXPECT_TRUE(read(with("radius: 0.5")));
+  EXPECT_TRUE(read(with("radius_scale: 2")));
+  EXPECT_THAT(error_of(with("radius: 0.5, radius_scale: 2")), HasSubstr("`radius_scale` has no effect"));
+}
+
 TEST_F(ReadScene, TheHashIsOfAllThatWasRead) {
   write("n.swc", "1 1 0 0 0 1 -1\n");
   const std::string text = "marrow: 1\nobjects:\n  - field: {skeleton: {file: n.swc}}\n";
