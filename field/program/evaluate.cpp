@@ -1,5 +1,6 @@
 // Takes the largest part of a program.
 
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -89,7 +90,8 @@ FieldSample evaluate(const FieldProgram& program, const Vec3d& p) {
 
 FieldSample value_and_gradient(const FieldTree& tree, const Vec3d& p) {
   const auto f = value(tree, variables_at<Jet<double, 3>>(p));
-  return {.value = f.value, .gradient = gradient_of(f)};
+  // On a skeleton operators multiply an infinite slope by 0, and divide it by another.
+  return {.value = f.value, .gradient = std::isinf(f.value) ? Vec3d{} : gradient_of(f)};
 }
 
 double value(const FieldProgram& program, const Vec3d& p) { return largest_part(program, p).value; }

@@ -1,4 +1,5 @@
 // Field of a triangle by integrals along its sides: of one radius under any kernel.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -91,6 +92,14 @@ SkeletonSample even_plate_field(const Plate& plate, const Power& power, double h
   return sum;
 }
 
+// Sides as seen from p are known to some 2^-50 of the longest. As near as that to a vertex, what they give would cancel
+// to anything, of either sign.
+bool is_on(const Plate& plate) {
+  double longest = 0;
+  for (const Side& side : plate.sides) longest = std::max(longest, side.t2 - side.t1);
+  return std::hypot(plate.beside, plate.height) <= 0x1p-46 * longest;
+}
+
 }  // namespace
 
 template <Derivatives Order>
@@ -99,7 +108,7 @@ std::optional<SkeletonSample> triangle_by_sides(const TriangleSkeleton& triangle
   if (!plate) return {};
   const double h = plate->height, beside = plate->beside;
   if (!(beside * beside + h * h <= plate->narrowest * plate->narrowest)) return {};
-  if (beside == 0 && h == 0) return SkeletonSample::on_skeleton();
+  if (is_on(*plate)) return SkeletonSample::on_skeleton();
   if (!plate->is_even()) return tapered_plate_field<Order>(*plate, n);
   return even_plate_field<Order>(*plate, {kernel_degree(n, 2), 1 / surface_normalisation(n)}, h);
 }

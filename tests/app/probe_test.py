@@ -71,6 +71,14 @@ class ProbeTest(ProgramTest):
         self.assertEqual(answer["sum"], math.inf)
         self.assertTrue(answer["inside"])
 
+    def test_on_a_skeleton_under_an_operator_slopes_are_zero(self):
+        ball = "{blend: {of: [{point: {at: [0, 0, 0], radius: 0.3}}]}}"
+        for operator in ("restricted_blend", "sharp_union", "soft_union", "sum", "ricci", "contact"):
+            for of in (f"{ball}, {{sphere: {{center: [0.1, 0, 0], radius: 0.4}}}}", f"{ball}, {ball}"):
+                scene = self.write("pole.yaml", f"marrow: 1\nobjects:\n  - field: {{{operator}: {{of: [{of}]}}}}\n")
+                answer, = self.probe(scene, [(0, 0, 0)])
+                self.assertEqual((answer["value"], answer["gradient"]), (math.inf, [0, 0, 0]), operator)
+
     def test_an_interrupted_list_is_still_json(self):
         self.write("points.txt", "".join(f"{0.001 * k} 0.37 0.1\n" for k in range(200000)))
         out, told = self.interrupted("probe", self.write("rings.yaml", SLOW), "--points", "points.txt", "--curvature")

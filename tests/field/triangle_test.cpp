@@ -137,6 +137,29 @@ NearPlace place_near_triangle(Random& random, int i) {
 }
 
 // Lines lose more digits than sides where a triangle is many radii wide.
+// Of the doubles beside a vertex: an integral of what is positive is not below 0.
+TEST(Triangle, IsInsideWithinRoundingOfAVertex) {
+  const TriangleSkeleton triangle{{Vec3d{0, 0, 0}, {1, 0, 0}, {0.3, 0.9, 0.2}}, {0.2, 0.2, 0.2}};
+  const auto beside = [](double x, int ulps) {
+    for (; ulps > 0; --ulps) x = std::nextafter(x, 2.0);
+    for (; ulps < 0; ++ulps) x = std::nextafter(x, -2.0);
+    return x;
+  };
+  for (const int degree : {3, 4, 6, 10, 20})
+    for (int x = -4; x <= 4; ++x)
+      for (int y = -4; y <= 4; ++y)
+        for (int z = -4; z <= 4; ++z) {
+          const Vec3d p{beside(0.3, x), beside(0.9, y), beside(0.2, z)};
+          const SkeletonSample sample = triangle_field<Derivatives::Second>(triangle, p, degree);
+          ASSERT_GT(sample.value, 1e3) << degree << ' ' << x << ' ' << y << ' ' << z;
+          ASSERT_TRUE(is_finite(sample.gradient));
+        }
+  EXPECT_GT(triangle_field<Derivatives::First>({{Vec3d{0, 0, 0.5}, {1, 0, 0}, {0, 0, 1}}, {0.2, 0.2, 0.2}},
+                                               {1, 5e-81, 7e-81}, 3)
+                .value,
+            1e3);
+}
+
 TEST(Triangle, IsTheSameBySidesAndByLines) {
   Random random(83);
   Comparison compared;
