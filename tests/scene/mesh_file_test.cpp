@@ -159,7 +159,7 @@ TEST(MeshFile, PassesOverWhatIsNoShape) {
       "element vertex 3\r\nproperty uchar red\r\nproperty double z\r\nproperty double y\r\nproperty double x\r\n"
       "element face 2\r\nproperty uchar kind\r\nproperty list uint8 int32 vertex_index\r\nelement none "
       "9000000000000\r\n"
-      "end_header\r\n7 2 0.5 0.5\r\n255 3 2 0.1\r\n0 0 0 1\r\n0 0 1 0\r\n0 3 0 1 2\r\n0 2 0 1\r\n",
+      "end_header\r\n7 2 nan 0.5\r\n-nan 3 2 0.1\r\n0 0 0 1\r\n0 0 1 0\r\n0 3 0 1 2\r\n0 2 0 1\r\n",
       "a.ply");
   ASSERT_TRUE(mesh) << mesh.why()[0].message;
   ASSERT_EQ(mesh->triangles.size(), 1u);

@@ -154,6 +154,11 @@ class Values {
 
   // Nothing at the end of the file, or after a word that is no number.
   std::optional<double> next(Type type) { return format_ == Format::Ascii ? next_number() : next_bytes(type); }
+  // Passes over a value, which may be any word; false at the end of the file.
+  bool skip(Type type) {
+    const bool is_there = next(type).has_value();
+    return is_there || !word_.empty();
+  }
   // Where the last value stands; null in binary files.
   const char* place() const { return word_.data(); }
   std::string_view word() const { return word_; }
@@ -221,10 +226,14 @@ class PlyReader {
         if (!read_list(element, property, values)) return false;
         continue;
       }
+      const std::size_t axis = property.name.size() == 1 ? std::string_view("xyz").find(property.name) : 3;
+      if (axis > 2) {
+        if (!values.skip(property.type)) return false;
+        continue;
+      }
       const auto value = values.next(property.type);
       if (!value) return false;
-      const std::size_t axis = std::string_view("xyz").find(property.name);
-      if (property.name.size() == 1 && axis < 3) at[axis] = *value;
+      at[axis] = *value;
       if (place == nullptr) place = values.place();
     }
     if (element.name == "vertex") mesh_.add_vertex(at, place);
@@ -239,10 +248,12 @@ class PlyReader {
     if (!whole || *whole < 0) return false;
     const char* const place = values.place();
     for (long long i = 0; i < *whole; ++i) {
+      if (!is_face) {
+        if (!values.skip(property.type)) return false;
+        continue;
+      }
       const auto value = values.next(property.type);
-      if (!value) return false;
-      if (!is_face) continue;
-      const auto vertex = whole_number(*value);
+      const auto vertex = value ? whole_number(*value) : std::nullopt;
       if (!vertex || *vertex < 0 || *vertex > UINT32_MAX) return false;
       mesh_.add_corner(static_cast<std::uint32_t>(*vertex), values.place());
     }
